@@ -1,6 +1,7 @@
 /* bench_dynamics.c - time of RNEA, ABA and CRBA per call and per body.
  *
- * Chains of revolute joints with twisted axes, double precision, one core; the least of many repetitions. */
+ * Chains of revolute joints with twisted axes, double precision, one core; the least of many
+ * repetitions. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -20,9 +21,20 @@ struct scene {
 static struct scene scene_make(int n)
 {
     struct scene s = {.arena = arena_create()};
-    struct model_spec spec = {.generator = MODEL_SERIAL_CHAIN, .nbody = n, .joint = JOINT_REVOLUTE, .length = 1,
-                              .radius = 0.05, .mass = 1, .mass_ratio = 1, .axes = AXES_TWISTED, .pose = POSE_COILED,
-                              .inertia = INERTIA_RANDOM, .rate = 1, .torque = 1, .gravity = {0, 0, -9.81}, .seed = 1};
+    struct model_spec spec = {.generator = MODEL_SERIAL_CHAIN,
+                              .nbody = n,
+                              .joint = JOINT_REVOLUTE,
+                              .length = 1,
+                              .radius = 0.05,
+                              .mass = 1,
+                              .mass_ratio = 1,
+                              .axes = AXES_TWISTED,
+                              .pose = POSE_COILED,
+                              .inertia = INERTIA_RANDOM,
+                              .rate = 1,
+                              .torque = 1,
+                              .gravity = {0, 0, -9.81},
+                              .seed = 1};
     struct err e;
     err_clear(&e);
     struct model *m = model_build(&spec, s.arena, &e);
@@ -39,7 +51,10 @@ static void call_rnea(struct scene *s)
     rnea(s->dynamics, s->state->q, s->state->qd, s->state->qdd, s->out, NULL);
 }
 
-static void call_aba(struct scene *s) { aba(s->dynamics, s->state->q, s->state->qd, s->state->tau, s->out, NULL); }
+static void call_aba(struct scene *s)
+{
+    aba(s->dynamics, s->state->q, s->state->qd, s->state->tau, s->out, NULL);
+}
 
 static void call_crba(struct scene *s) { crba(s->dynamics, s->state->q, s->out, NULL); }
 

@@ -1,9 +1,10 @@
-/* bench_net.c - messages per second of the network levels: recursive doubling on large machines, random loads beside
- * the cycle-by-cycle router simulator BookSim 2.0.
+/* bench_net.c - messages per second of the network levels: recursive doubling on large machines,
+ * random loads beside the cycle-by-cycle router simulator BookSim 2.0.
  *
  *     bench_net [LEVEL...]      loggp link packet flit auto; all of them when none is named
  *
- * Seconds are of the processor, best of three; events include the one with which the replay starts each message. */
+ * Seconds are of the processor, best of three; events include the one with which the replay starts
+ * each message. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +38,8 @@ static void job_open(struct job *j, const char *topology, int vcs)
     CHECK(j->topology);
 }
 
-/* step j: i sends to i + 2^j mod N after its own send of the step before has arrived, and what it then received */
+/* step j: i sends to i + 2^j mod N after its own send of the step before has arrived, and what it
+ * then received */
 static void doubling(struct job *j)
 {
     int nnode = j->topology->nnode, steps = 0, ndep = 0;
@@ -76,13 +78,16 @@ static double idle_bytes(const struct job *j)
     struct arena *a = arena_create();
     struct sim *s = sim_create();
     err_clear(&e);
-    double bytes = net_create(&j->machine, j->topology, s, a, NULL, NULL, false, &e) ? (double)arena_peak(a) : 0;
+    double bytes = net_create(&j->machine, j->topology, s, a, NULL, NULL, false, &e)
+                       ? (double)arena_peak(a)
+                       : 0;
     sim_destroy(s);
     arena_destroy(a);
     return bytes / j->topology->nnode;
 }
 
-/* replay on a level, best of three, and print a line; booksim: its packets per second, 0: not known */
+/* replay on a level, best of three, and print a line; booksim: its packets per second, 0: not
+ * known */
 static void measure(struct job *j, const char *what, enum network_level level, double booksim)
 {
     struct traffic_result r = {0};
@@ -102,7 +107,8 @@ static void measure(struct job *j, const char *what, enum network_level level, d
         printf("%s\n", e.text);
         return;
     }
-    printf("%9.0f %10.0f %9.0f %9.2f %9.0f", n, n / best, best / n * 1e9, (double)r.events / n, idle_bytes(j));
+    printf("%9.0f %10.0f %9.0f %9.2f %9.0f", n, n / best, best / n * 1e9, (double)r.events / n,
+           idle_bytes(j));
     if (booksim > 0) printf(" %8.0f x", n / best / booksim);
     printf("\n");
     fflush(stdout);
@@ -113,7 +119,8 @@ static void bench_doubling(const bool *wanted)
     static const struct {
         const char *topology;
         int vcs;
-    } networks[] = {{"torus8x4x4", 2}, {"torus32x32x16", 2}, {"mesh16x16", 1}, {"hcube7", 1}, {"hcube14", 1}};
+    } networks[] = {
+        {"torus8x4x4", 2}, {"torus32x32x16", 2}, {"mesh16x16", 1}, {"hcube7", 1}, {"hcube14", 1}};
     for (size_t i = 0; i < sizeof networks / sizeof *networks; i++) {
         struct job j;
         char what[64];
@@ -122,7 +129,8 @@ static void bench_doubling(const bool *wanted)
         snprintf(what, sizeof what, "doubling %s", networks[i].topology);
         for (int l = 0; l < LEVELS; l++) {
             bool flit_by_flit = l == LEVEL_FLIT && networks[i].vcs > 1;
-            if (wanted[l] && !(flit_by_flit && j.topology->nnode > BIG)) measure(&j, what, (enum network_level)l, 0);
+            if (wanted[l] && !(flit_by_flit && j.topology->nnode > BIG))
+                measure(&j, what, (enum network_level)l, 0);
         }
         arena_destroy(j.arena);
     }
@@ -147,7 +155,8 @@ static void bench_loads(const bool *wanted)
             err_clear(&e);
             job_open(&j, networks[i].topology, networks[i].vcs);
             int cycles = k == 0 ? 20 * LOAD_CYCLES : LOAD_CYCLES;
-            CHECK(netcheck_load("uniform", j.topology, FLITS, loads[k], cycles, 1, j.arena, &j.q, &e));
+            CHECK(netcheck_load("uniform", j.topology, FLITS, loads[k], cycles, 1, j.arena, &j.q,
+                                &e));
             snprintf(what, sizeof what, "load %g %s", loads[k], networks[i].topology);
             for (int l = 0; l < LEVELS; l++)
                 if (wanted[l]) measure(&j, what, (enum network_level)l, networks[i].booksim[k]);
@@ -162,8 +171,8 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc; i++)
         for (int l = 0; l < LEVELS; l++)
             if (strcmp(argv[i], netcheck_level_name((enum network_level)l)) == 0) wanted[l] = true;
-    printf("%-26s %-7s %9s %10s %9s %9s %9s %10s\n", "pattern", "level", "messages", "messages/s", "ns/mess.",
-           "ev./mess.", "B/node", "BookSim");
+    printf("%-26s %-7s %9s %10s %9s %9s %9s %10s\n", "pattern", "level", "messages", "messages/s",
+           "ns/mess.", "ev./mess.", "B/node", "BookSim");
     bench_doubling(wanted);
     bench_loads(wanted);
     return 0;

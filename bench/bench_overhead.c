@@ -2,9 +2,10 @@
  *
  *   bench_overhead [P...]      default 16 128 1024 4096
  *
- * The main scenario with n = P, inverse and forward dynamics: host seconds of the simulated run over those of the same
- * kernels on the same number of ranks without any simulator (fibers, plain memory copies for messages, no clocks). And
- * what watching the answer costs: the kernels with residual and condition over those without. */
+ * The main scenario with n = P, inverse and forward dynamics: host seconds of the simulated run
+ * over those of the same kernels on the same number of ranks without any simulator (fibers, plain
+ * memory copies for messages, no clocks). And what watching the answer costs: the kernels with
+ * residual and condition over those without. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,10 +53,12 @@ static double bare_seconds(const struct run_spec *spec, bool watch, struct err *
     dynamics_run_of(r)->job.watch = watch;
     if (!r->type->prepare(r, a, e)) return 0;
     b.workspace = TAKE(a, spec->nrank, char *);
-    for (int k = 0; k < spec->nrank; k++) b.workspace[k] = arena_take(a, r->rank->workspace_bytes(r->job, k));
+    for (int k = 0; k < spec->nrank; k++)
+        b.workspace[k] = arena_take(a, r->rank->workspace_bytes(r->job, k));
     double best = 1e30;
     for (int round = 0; round < rounds_for(spec->nrank); round++) {
-        for (int k = 0; k < spec->nrank; k++) memset(b.workspace[k], 0, r->rank->workspace_bytes(r->job, k));
+        for (int k = 0; k < spec->nrank; k++)
+            memset(b.workspace[k], 0, r->rank->workspace_bytes(r->job, k));
         const double begin = host_seconds();
         many_ranks_publishing(spec->nrank, program, &b, r->output, PROGRAM_OUTPUTS);
         const double took = host_seconds() - begin;
@@ -107,8 +110,9 @@ static bool measure(int nrank)
         err_print(&e);
         return false;
     }
-    printf("%8d %12.3f %12.3f %12.3f %12.2f %12.2f %12.2f %12.2f\n", nrank, 1e3 * bare, 1e3 * simulated[0],
-           1e3 * simulated[1], watched / bare, direct, simulated[0] / watched, simulated[1] / watched);
+    printf("%8d %12.3f %12.3f %12.3f %12.2f %12.2f %12.2f %12.2f\n", nrank, 1e3 * bare,
+           1e3 * simulated[0], 1e3 * simulated[1], watched / bare, direct, simulated[0] / watched,
+           simulated[1] / watched);
     fflush(stdout);
     return true;
 }
@@ -118,8 +122,8 @@ int main(int argc, char **argv)
     static const int standard[] = {16, 128, 1024, 4096};
     const int n = argc > 1 ? argc - 1 : 4;
     bool good = true;
-    printf("%8s %12s %12s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms", "watched/bare",
-           "same, direct", "loggp/watched", "link/watched");
+    printf("%8s %12s %12s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms",
+           "watched/bare", "same, direct", "loggp/watched", "link/watched");
     for (int i = 0; i < n; i++) good = measure(argc > 1 ? atoi(argv[i + 1]) : standard[i]) && good;
     return !good;
 }

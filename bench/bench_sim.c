@@ -1,4 +1,5 @@
-/* bench_sim.c - what a fiber switch and an event cost, beside the least they could cost. Prints ratios. */
+/* bench_sim.c - what a fiber switch and an event cost, beside the least they could cost. Prints
+ * ratios. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -38,7 +39,8 @@ static double switch_ns(int n)
     return ns;
 }
 
-/* ns to take the first event and post another one a random time later, `pending` at a time (the hold model). */
+/* ns to take the first event and post another one a random time later, `pending` at a time (the
+ * hold model). */
 static double hold_ns(int pending, uint64_t spread)
 {
     enum { OPERATIONS = 4000000 };
@@ -73,11 +75,13 @@ int main(void)
         printf("  %7d fibers  %7.1f ns  ratio %5.2f\n", fibers[i], ns, ns / 10);
     }
     static const int pending[] = {100, 1000, 10000, 100000, 1000000};
-    printf("event taken and posted, raw limit about 80 ns for a binary heap's replace at 1000 pending\n");
+    printf("event taken and posted, raw limit about 80 ns for a binary heap's replace at 1000 "
+           "pending\n");
     for (int i = 0; i < 5; i++) {
         double wide = hold_ns(pending[i], 1000000), narrow = hold_ns(pending[i], 64);
-        printf("  %7d pending  %7.1f ns (times 1 us apart)  %7.1f ns (64 ps apart)  ratio to 80 ns %5.2f\n", pending[i],
-               wide, narrow, wide / 80);
+        printf("  %7d pending  %7.1f ns (times 1 us apart)  %7.1f ns (64 ps apart)  ratio to 80 ns "
+               "%5.2f\n",
+               pending[i], wide, narrow, wide / 80);
     }
     return 0;
 }

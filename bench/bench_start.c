@@ -15,7 +15,8 @@
 #include "base/progress.h"
 #include "base/text.h"
 
-static const char *const database[] = {"bench_start.db", "bench_start.db-wal", "bench_start.db-shm"};
+static const char *const database[] = {"bench_start.db", "bench_start.db-wal",
+                                       "bench_start.db-shm"};
 
 /* One process: *cpu and *clock [s]; false when it fails. */
 static bool once(const char *program, int n, int runs, double *cpu, double *clock)
@@ -31,8 +32,9 @@ static bool once(const char *program, int n, int runs, double *cpu, double *cloc
     if (child == 0) {
         const int quiet = open("/dev/null", O_WRONLY);
         dup2(quiet, STDOUT_FILENO);
-        execlp(program, program, "run", "speedup-t3e", "-q", "-j1", "-o", database[0], "--set", size,
-               "--set", "level=loggp", "--set", "record.links=false", "--set", seeds.s, (char *)NULL);
+        execlp(program, program, "run", "speedup-t3e", "-q", "-j1", "-o", database[0], "--set",
+               size, "--set", "level=loggp", "--set", "record.links=false", "--set", seeds.s,
+               (char *)NULL);
         _exit(127);
     }
     int status = 1;

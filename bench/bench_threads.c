@@ -2,9 +2,9 @@
  *
  *   bench_threads [-r ROUNDS] [-t THREADS] [-l LEVEL] [P...]
  *
- * default 3 rounds, 2 threads, loggp, P = 1024 4096 16384. Each run is made in a process of its own, the kinds in
- * turn; times are the least of the rounds: of the simulation proper (ranks and messages, wall), and the processor
- * time of the whole process. The digests must be the same. */
+ * default 3 rounds, 2 threads, loggp, P = 1024 4096 16384. Each run is made in a process of its
+ * own, the kinds in turn; times are the least of the rounds: of the simulation proper (ranks and
+ * messages, wall), and the processor time of the whole process. The digests must be the same. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,10 +81,10 @@ static bool compare(int nrank, const char *level, int threads, int rounds)
         if (!measure_apart(nrank, level, threads, &t)) return false;
         least(&many, &t, i == 0);
     }
-    printf("%8d %-6s %7d %9.3f %9.3f %6.2f %9.3f %9.3f %6.2f %9.3f %9.3f %8.0f %8.0f %s\n", nrank, level, threads,
-           one.wall, many.wall, one.wall / many.wall, one.cpu, many.cpu, many.cpu / one.cpu, one.total,
-           many.total, (double)one.peak / 1048576.0, (double)many.peak / 1048576.0,
-           one.digest == many.digest ? "same" : "DIFFERENT");
+    printf("%8d %-6s %7d %9.3f %9.3f %6.2f %9.3f %9.3f %6.2f %9.3f %9.3f %8.0f %8.0f %s\n", nrank,
+           level, threads, one.wall, many.wall, one.wall / many.wall, one.cpu, many.cpu,
+           many.cpu / one.cpu, one.total, many.total, (double)one.peak / 1048576.0,
+           (double)many.peak / 1048576.0, one.digest == many.digest ? "same" : "DIFFERENT");
     fflush(stdout);
     return one.digest == many.digest;
 }
@@ -99,8 +99,9 @@ int main(int argc, char **argv)
         else if (option == 'l') level = optarg;
         else return 64;
     }
-    printf("%8s %-6s %7s %9s %9s %6s %9s %9s %6s %9s %9s %8s %8s digests\n", "P", "level", "threads",
-           "wall 1", "wall N", "ratio", "cpu 1", "cpu N", "ratio", "all 1", "all N", "MiB 1", "MiB N");
+    printf("%8s %-6s %7s %9s %9s %6s %9s %9s %6s %9s %9s %8s %8s digests\n", "P", "level",
+           "threads", "wall 1", "wall N", "ratio", "cpu 1", "cpu N", "ratio", "all 1", "all N",
+           "MiB 1", "MiB N");
     static char *usual[] = {"1024", "4096", "16384"};
     char **word = optind < argc ? argv + optind : usual;
     const int n = optind < argc ? argc - optind : 3;

@@ -15,7 +15,8 @@ bool torus_plan_read(struct plan *p, int nrank, const char *level, struct err *e
     int dims[3];
     char set[3][96];
     torus_of(nrank, dims);
-    snprintf(set[0], sizeof set[0], "machine.topology.dims=[%d, %d, %d]", dims[0], dims[1], dims[2]);
+    snprintf(set[0], sizeof set[0], "machine.topology.dims=[%d, %d, %d]", dims[0], dims[1],
+             dims[2]);
     snprintf(set[1], sizeof set[1], "model.n=%d", nrank);
     snprintf(set[2], sizeof set[2], "machine.network.level=%s", level);
     const char *all[] = {set[0], set[1], set[2], "record.links=false"};

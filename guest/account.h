@@ -11,7 +11,8 @@
 #ifdef MIMDSIM_FIXED_R15
 register int64_t mimdsim_counted __asm__("r15");
 
-/* What functions counted that were called through their entries, by libraries or pointers (guest/host.c). */
+/* What functions counted that were called through their entries, by libraries or pointers
+ * (guest/host.c). */
 extern int64_t mimdsim_pending;
 
 static inline void mimdsim_account(void)

@@ -9,7 +9,8 @@
  * a file was made by `mimdsim cc`. */
 struct mimdsim_host *mimdsim_host;
 
-/* Counted by functions that keep register r15 for their callers (`mimdsim cc`), not yet handed over [ps]. */
+/* Counted by functions that keep register r15 for their callers (`mimdsim cc`), not yet handed over
+ * [ps]. */
 int64_t mimdsim_pending;
 
 /* The program's own file, from its program headers; found at the first use. */

@@ -5,8 +5,8 @@
  *                                               mimdsim plot mimdsim.db speedup
  * What it may call is described in mimdsim/program.h, each function with its rules.
  *
- * Every rank runs `run` below, each with its own copy of all variables. Ranks share nothing: what one
- * knows another learns by a message. */
+ * Every rank runs `run` below, each with its own copy of all variables. Ranks share nothing: what
+ * one knows another learns by a message. */
 #include <mimdsim/program.h>
 
 /* A parameter: `mimdsim run @NAME@.c --set n=50000` sets it. This is its default. */
@@ -42,8 +42,8 @@ static void run(struct comm *c)
     if (me == 0) comm_publish(c, 0, 0, 1, &sum);
 }
 
-/* The same on one processor. The speedup is measured against it, and its result is what the parallel
- * one is compared with: a run whose result differs by more than .tolerance is stored as invalid. */
+/* The same on one processor. The speedup is measured against it, and its result is what the
+ * parallel one is compared with: a run whose result differs by more than .tolerance is stored as invalid. */
 static void serial(struct comm *c)
 {
     const double sum = add_terms(0, n);
@@ -56,6 +56,7 @@ PROGRAM(.title = "sum of 1/i^2",
         .output = {"sum"},                 /* results: comm_publish */
         .run = run, .serial = {{"one loop", serial}}, .tolerance = 1e-12);
 
-/* To try: 1. Collect the shares in pairs (log2 P rounds), or by comm_allreduce(c, COMM_SUM, &sum, 1).
+/* To try: 1. Collect the shares in pairs (log2 P rounds), or by
+ *            comm_allreduce(c, COMM_SUM, &sum, 1).
  *         2. mimdsim timeline @NAME@.c --set ranks=8   shows where the time goes.
  *         3. Let rank 0 wait for a message that nobody sends, and read what is told. */

@@ -1,11 +1,11 @@
-/* play-schedule.c - an MPI program that makes the messages and computing times of a schedule: SMPI's part of
- * bench/compare-peers.sh.
+/* play-schedule.c - an MPI program that makes the messages and computing times of a schedule:
+ * SMPI's part of bench/compare-peers.sh.
  *
  *   play-schedule OPERATIONS OFFSETS
  *
- * OPERATIONS: per rank lines "c PICOSECONDS", "s BYTES TO TAG", "r BYTES FROM TAG" and "e". OFFSETS: where each
- * rank's lines begin, 16 bytes a rank, so that no process reads what is not its own. A host computes 10^12 operations a
- * second, so that a picosecond is an operation. */
+ * OPERATIONS: per rank lines "c PICOSECONDS", "s BYTES TO TAG", "r BYTES FROM TAG" and "e".
+ * OFFSETS: where each rank's lines begin, 16 bytes a rank, so that no process reads what is not its
+ * own. A host computes 10^12 operations a second, so that a picosecond is an operation. */
 #include <mpi.h>
 #include <smpi/smpi.h>
 #include <stdio.h>

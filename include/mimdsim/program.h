@@ -88,8 +88,8 @@ extern const struct mimdsim_program mimdsim_program __attribute__((visibility("d
 
 /* --- who and where --- */
 
-/* comm_rank, comm_size: this rank's number, 0 .. size - 1, and how many ranks there are. In a serial
- * code and in check 0 and 1. comm_run_size: how many ranks the run has, there as well. */
+/* comm_rank, comm_size: this rank's number, 0 .. size - 1, and how many ranks there are. In a
+ * serial code and in check 0 and 1. comm_run_size: how many ranks the run has, there as well. */
 int comm_rank(const struct comm *c);
 int comm_size(const struct comm *c);
 int comm_run_size(const struct comm *c);
@@ -170,8 +170,8 @@ enum comm_op {
     COMM_MAX_INT64
 };
 
-/* comm_barrier: return when every rank has entered, by hardware or messages as the machine has it.
- */
+/* comm_barrier: return when every rank has entered, by hardware or messages as the machine has
+ * it. */
 #define comm_barrier(c) comm_barrier_at((c), __FILE__, __LINE__)
 
 /* comm_broadcast: `bytes` bytes of `data`, in on rank `root`, out on all others. */

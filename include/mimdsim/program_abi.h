@@ -38,8 +38,8 @@ enum mimdsim_parameter_kind {
 };
 
 /* A parameter is a variable of the program: what it holds when the image is loaded is its default,
- * and the simulator writes the value of the run into every rank's own copy before the rank begins.
- */
+ * and the simulator writes the value of the run into every rank's own copy before the rank
+ * begins. */
 struct mimdsim_parameter {
     const char *name; /* letters, digits and _; its key in scenarios */
     int kind;         /* enum mimdsim_parameter_kind */
@@ -96,9 +96,9 @@ struct mimdsim_program {
      * which a run is valid. 0: the same numbers. */
     double tolerance;
 
-    /* check: where there is no serial code to compare with, or more to be said: looks at the results
-     * of a run on comm_run_size ranks (comm_output) and states their errors (comm_error). Runs
-     * alone, on one processor, after the run. NULL: none. */
+    /* check: where there is no serial code to compare with, or more to be said: looks at the
+     * results of a run on comm_run_size ranks (comm_output) and states their errors (comm_error).
+     * Runs alone, on one processor, after the run. NULL: none. */
     void (*check)(struct comm *c);
 
     /* estimate: costs by formula for `mimdsim explain`; the parameters are set. NULL: they are not
@@ -106,8 +106,8 @@ struct mimdsim_program {
     void (*estimate)(int ranks, struct mimdsim_estimate *out);
 
     int cost;      /* enum mimdsim_cost */
-    int wildcards; /* 1: it uses COMM_ANY_SOURCE, masks of tags, tests, probes or synchronous sends, which take longer
-                      to simulate */
+    int wildcards; /* 1: it uses COMM_ANY_SOURCE, masks of tags, tests, probes or synchronous sends,
+                      which take longer to simulate */
     int64_t stack_bytes; /* stack of a rank; 0: 8 MiB, of which only what is used takes memory */
 };
 
@@ -187,7 +187,8 @@ struct comm_functions {
     void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data,
                     const char *file, int line);
     const double *(*output)(struct comm *c, int output, int64_t *n, const char *file, int line);
-    void (*error)(struct comm *c, const char *quantity, double relative, const char *file, int line);
+    void (*error)(struct comm *c, const char *quantity, double relative, const char *file,
+                  int line);
     void (*fail)(struct comm *c, const char *text, const char *file, int line);
 };
 

@@ -5,16 +5,18 @@
 #include "app/verb.h"
 #include "store/store.h"
 
-/* arguments_database: open the first argument for reading, or `otherwise` when there is none. Where it is no
- * database, but something else that is known, or the database stands behind it, *e is ERR_USAGE and says so;
- * otherwise as store_open. The caller closes it. Says on stderr, unless --quiet, that an older one is read through a
- * copy. */
+/* arguments_database: open the first argument for reading, or `otherwise` when there is none. Where
+ * it is no database, but something else that is known, or the database stands behind it, *e is
+ * ERR_USAGE and says so; otherwise as store_open. The caller closes it. Says on stderr, unless
+ * --quiet, that an older one is read through a copy. */
 struct store *arguments_database(const struct common *c, const char *otherwise, struct err *e);
 
-/* arguments_look: as arguments_database, but says nothing on stderr: for those who open it again for writing. */
+/* arguments_look: as arguments_database, but says nothing on stderr: for those who open it again
+ * for writing. */
 struct store *arguments_look(const struct common *c, const char *otherwise, struct err *e);
 
-/* arguments_store: store_open `path` for writing, and say on stderr, unless --quiet, that it was upgraded. */
+/* arguments_store: store_open `path` for writing, and say on stderr, unless --quiet, that it was
+ * upgraded. */
 struct store *arguments_store(const struct common *c, const char *path, struct err *e);
 
 /* arguments_run_number: whether `text` is the number of a run; where not, ERR_USAGE. */

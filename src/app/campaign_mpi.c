@@ -28,8 +28,10 @@ static int silence(void)
     return kept;
 }
 
+/* Asked for by --campaign: without it nothing of MPI is loaded. */
 bool job_open(struct job *j, const char *campaign, struct err *e)
 {
+    /* -1: no stream is kept, which 0 would claim */
     *j = (struct job){.kept = -1};
     if (campaign == NULL) return true;
     if (strcmp(campaign, "mpi") != 0)
@@ -40,6 +42,7 @@ bool job_open(struct job *j, const char *campaign, struct err *e)
     return true;
 }
 
+/* From here on each process may tell its own errors; progress remains the first one's. */
 void job_heard(struct job *j, struct common *c)
 {
     if (j->kept >= 0) {
@@ -50,6 +53,7 @@ void job_heard(struct job *j, struct common *c)
     if (j->h.rank > 0) c->quiet = true;
 }
 
+/* The byte 0 at the end keeps "ab", "c" apart from "a", "bc". */
 static uint64_t mix_text(uint64_t h, const char *s)
 {
     for (; *s != '\0'; s++) h = digest_mix(h, (unsigned char)*s);
@@ -70,6 +74,7 @@ static int64_t digest_of(const struct plan *p)
 bool job_agree(struct job *j, const struct plan *p, bool ok, struct err *e)
 {
     if (!j->on) return ok;
+    /* Two numbers from each: whether it is ready, and what it would run. */
     const int64_t mine[2] = {ok, ok ? digest_of(p) : 0};
     int64_t *all = calloc((size_t)j->h.size, sizeof mine);
     CHECK(all != NULL);
@@ -104,15 +109,18 @@ static bool share_levels(const struct job *j, const struct plan *p, struct run_s
     struct hosts_message m;
     bool there, ok = true;
     CHECK(level != NULL);
+    /* Only what differs from the plan is sent as a level. */
     for (int i = 0; i < p->nrun; i++) {
         const enum network_level l = run[i].machine.network.level;
         level[i] = l == p->run[i].machine.network.level ? -1 : (int)l;
     }
     for (int i = 1; j->h.rank == 0 && i < j->h.size; i++)
         ok = ok && j->h.call->send(i, TAG_LEVELS, level, bytes);
+    /* The size is compared: another plan would have passed the agreement only by a fault. */
     if (j->h.rank > 0)
         ok = j->h.call->look(0, TAG_LEVELS, true, &there, &m) && m.bytes == bytes &&
              j->h.call->receive(&m, level);
+    /* As the first process did, so that identities and seeds follow. */
     for (int i = 0; ok && j->h.rank > 0 && i < p->nrun; i++) {
         if (level[i] < 0) continue;
         struct level_choice unused;
@@ -136,9 +144,9 @@ bool job_run(struct job *j, const struct plan *p, struct run_spec *run,
 }
 
 /* One run on all processes. *gone: one of them does not answer. */
-static bool spread_one(const struct job *j, const struct run_spec *run, const struct run_order *order,
-                       int number, struct run_cache *cache, run_done_fn *done, void *context,
-                       bool *gone)
+static bool spread_one(const struct job *j, const struct run_spec *run,
+                       const struct run_order *order, int number, struct run_cache *cache,
+                       run_done_fn *done, void *context, bool *gone)
 {
     struct arena *arena = arena_create();
     struct run_result result;
@@ -152,6 +160,7 @@ static bool spread_one(const struct job *j, const struct run_spec *run, const st
         result = run_refused(&why);
         result.nrank = run->nrank;
     }
+    /* Only the first process stores and prints. */
     *gone = result.job_broken;
     const bool ok = j->h.rank > 0 || done(context, run, &result);
     arena_destroy(arena);
@@ -171,6 +180,7 @@ bool job_spread(struct job *j, const struct plan *p, struct run_spec *run,
         free(wanted);
         return false;
     }
+    /* All walk through the runs in step; each run spreads over all of them. */
     struct run_cache *cache = run_cache_create();
     for (int i = 0; i < p->nrun && ok && !gone; i++) {
         if (!wanted[i]) continue;

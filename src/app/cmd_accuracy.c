@@ -38,8 +38,8 @@ static bool read_within(const char *text, double *within, struct err *e)
     if (strcmp(end, "%") == 0) *within /= 100, end++;
     /* An error of 200 % is nobody's wish: the sign was forgotten. */
     if (number && *end == '\0' && text[strlen(text) - 1] != '%' && *within >= 1)
-        return err_set(e, ERR_USAGE, "--within: '%s' is an error of %g %%; did you mean '%s%%'?", text,
-                       100 * *within, text);
+        return err_set(e, ERR_USAGE, "--within: '%s' is an error of %g %%; did you mean '%s%%'?",
+                       text, 100 * *within, text);
     if (!number || *end || !(*within > 0) || !isfinite(*within))
         return err_set(e, ERR_USAGE, "--within: '%s' is not a positive number such as 2%% or 1e-6",
                        text);

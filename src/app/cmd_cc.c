@@ -20,6 +20,7 @@ static bool is_there(const char *folder, const char *name)
 /* The folder of this program, and the program itself. */
 static bool find_self(char self[PATH_SIZE], char folder[PATH_SIZE])
 {
+    /* Linux tells the true path, whatever argv[0] says and PATH holds. */
     const ssize_t n = readlink("/proc/self/exe", self, PATH_SIZE - 1);
     if (n <= 0) return false;
     self[n] = '\0';
@@ -58,6 +59,7 @@ static int compile_as(enum driver_language language, int argc, char **argv)
     struct driver_places places = {self, MIMDSIM_INCLUDEDIR, NULL, MIMDSIM_PKGLIBDIR};
     struct err e;
     err_clear(&e);
+    /* The built tree is tried first: who develops wants the headers that were just edited. */
     if (find_self(self, folder)) {
         snprintf(library, sizeof library, "%s/../lib/mimdsim", folder);
         snprintf(include, sizeof include, "%s/../include", folder);
@@ -68,6 +70,7 @@ static int compile_as(enum driver_language language, int argc, char **argv)
             places = (struct driver_places){self, include, NULL, library};
     }
     static const char *const compiler[] = {"gcc", "g++", "gfortran"};
+    /* Only a lone --help is ours; beside other options it is meant for the compiler. */
     if (argc == 2 && strcmp(argv[1], "--help") == 0) return print_help(argv[0], compiler[language]);
     const int status = driver_run(language, argc - 1, (const char *const *)argv + 1, &places, &e);
     if (status >= 0) return status;

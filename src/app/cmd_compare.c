@@ -22,9 +22,9 @@ static const char doc[] =
     "Example: mimdsim compare t3e-300 paragon my.yaml --on speedup-t3e --set n=16,64\n"
     "Example: mimdsim compare before.db after.db\n"
     "Example: mimdsim compare t3e-300 \"T3E, links x2\" -o mimdsim.db\n"
-    "\vEach of A, B, ... is a machine (a name or a file: the points of --on are run on it and stored), "
-    "a scenario (its points are run and stored), a database (all its runs), the number of a run of "
-    "the database -o, or what runs of that database are called.\n\n"
+    "\vEach of A, B, ... is a machine (a name or a file: the points of --on are run on it and "
+    "stored), a scenario (its points are run and stored), a database (all its runs), the number of "
+    "a run of the database -o, or what runs of that database are called.\n\n"
     "Runs of two sides are compared where they agree in everything but what the sides differ in. "
     "Ratios are to A; if runs are repeated, with their 95 % confidence interval. The figure is "
     "compare-A-B in the folder --dir.";
@@ -72,7 +72,8 @@ static bool stored_side(struct request *r, const char *name, struct store *s, co
         r->side[r->nside++] = (struct compare_side){
             .name = name, .store = s, .run_ids = arena_text(r->arena, ids.s)};
     } else if (ok) {
-        ok = err_set(e, ERR_NO_INPUT, "'%.80s' has no run that ended well in %s", name, store_path(s));
+        ok = err_set(e, ERR_NO_INPUT, "'%.80s' has no run that ended well in %s", name,
+                     store_path(s));
     }
     text_free(&ids);
     return ok;
@@ -82,7 +83,8 @@ static bool stored_side(struct request *r, const char *name, struct store *s, co
 static bool database_side(struct request *r, const char *path, struct err *e)
 {
     struct store *s = r->other[r->nside] = store_open(path, STORE_READ, e);
-    return s != NULL && stored_side(r, path, s, "SELECT id FROM run WHERE status = 'ok' ORDER BY id", NULL, e);
+    return s != NULL &&
+           stored_side(r, path, s, "SELECT id FROM run WHERE status = 'ok' ORDER BY id", NULL, e);
 }
 
 /* ---- runs that are made ---- */
@@ -113,7 +115,8 @@ static bool make_runs(struct request *r, const struct plan *p, struct run_spec *
         skip[i] = run[i].refused != NULL || (store_has(s, &run[i]) && !r->common->force);
     /* A result that cannot be stored ends the campaign, with its reason in *e. */
     struct keep k = {s, e};
-    return run_campaign(run, order, p->nrun, skip, r->common->jobs, r->common->quiet, keep_result, &k, e) &&
+    return run_campaign(run, order, p->nrun, skip, r->common->jobs, r->common->quiet, keep_result,
+                        &k, e) &&
            e->kind == ERR_NONE;
 }
 
@@ -124,7 +127,8 @@ static bool planned_side(struct request *r, const char *name, const char *scenar
     struct plan p = {0};
     struct plan_options o = common_plan(r->common);
     struct text ids = {0};
-    /* --machine is this verb's argument; everything else of the command line holds for all sides. */
+    /* --machine is this verb's argument; everything else of the command line holds for all
+     * sides. */
     if (machine != NULL) o.machine = machine;
     bool ok = plan_read(&p, scenario, &o, e);
     struct run_spec *run = TAKE(r->arena, p.nrun + 1, struct run_spec);
@@ -176,11 +180,15 @@ static bool called_side(struct request *r, const char *word, struct err *e)
     struct err ignored;
     err_clear(&ignored);
     struct store *s = own_store(r, false, &ignored);
-    if (s != NULL) store_select(s, "SELECT DISTINCT name FROM v_label ORDER BY 1", 0, NULL, add_name, &n, &ignored);
+    if (s != NULL)
+        store_select(s, "SELECT DISTINCT name FROM v_label ORDER BY 1", 0, NULL, add_name, &n,
+                     &ignored);
     for (int i = 0; i < n.n; i++)
         if (strcmp(n.name[i], word) == 0)
-            return stored_side(r, word, s, "SELECT v.run_id FROM v_label v JOIN run r ON r.id = v.run_id"
-                                           " WHERE v.name = ?1 AND r.status = 'ok' ORDER BY 1", word, e);
+            return stored_side(r, word, s,
+                               "SELECT v.run_id FROM v_label v JOIN run r ON r.id = v.run_id WHERE "
+                               "v.name = ?1 AND r.status = 'ok' ORDER BY 1",
+                               word, e);
     /* Machines are meant most often. */
     const char **stem, **title;
     int nmachine = 0;
@@ -188,9 +196,10 @@ static bool called_side(struct request *r, const char *word, struct err *e)
         for (int i = 0; i < nmachine && n.n < 256; i++) n.name[n.n++] = stem[i];
     const char *near = text_nearest(word, n.name, n.n);
     return err_set(e, ERR_NO_INPUT,
-                   "'%.80s' is no machine, scenario or database, and no run of %s is called so%s%s%s", word,
-                   r->common->database, near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-                   near != NULL ? "'?" : "");
+                   "'%.80s' is no machine, scenario or database, and no run of %s is called "
+                   "so%s%s%s",
+                   word, r->common->database, near != NULL ? "; did you mean '" : "",
+                   near != NULL ? near : "", near != NULL ? "'?" : "");
 }
 
 /* Digits only: the number of a run. */
@@ -210,8 +219,10 @@ static bool add_side(struct request *r, const char *word, struct err *e)
         const char *called = arena_text(r->arena, name.s);
         text_free(&name);
         struct store *s = own_store(r, false, e);
-        return s != NULL && stored_side(r, called, s, "SELECT id FROM run WHERE id = CAST(?1 AS INTEGER)"
-                                                      " AND status = 'ok'", word, e);
+        return s != NULL && stored_side(r, called, s,
+                                        "SELECT id FROM run WHERE id = CAST(?1 AS INTEGER) AND "
+                                        "status = 'ok'",
+                                        word, e);
     }
     switch (file_kind_of(word, r->arena)) {
     case FILE_DATABASE: return database_side(r, word, e);
@@ -260,9 +271,10 @@ int cmd_compare(int argc, char **argv)
     struct err e;
     err_clear(&e);
     const char *on = take_value(&argc, argv, "--on");
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR | TAKES_JOBS, "A B [C...]", doc, 2,
-                 MOST_SIDES);
-    struct request r = {.common = &c, .on = on != NULL ? on : "speedup-t3e", .arena = arena_create()};
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR | TAKES_JOBS, "A B [C...]",
+                 doc, 2, MOST_SIDES);
+    struct request r = {
+        .common = &c, .on = on != NULL ? on : "speedup-t3e", .arena = arena_create()};
     bool ok = answer(&r, &e);
     for (int i = 0; i < MOST_SIDES; i++) store_close(r.other[i]);
     store_close(r.own);

@@ -121,8 +121,8 @@ static void print_run(const struct run_spec *s, const struct run_estimate *r)
     text_free(&form);
 }
 
-/* Which runs go on several host threads, and why others do not; reasons are constant texts, so that equal ones are one
- * pointer or a few. */
+/* Which runs go on several host threads, and why others do not; reasons are constant texts, so that
+ * equal ones are one pointer or a few. */
 static void print_threads(const struct plan *p, const struct run_estimate *r)
 {
     int several = 0;
@@ -133,7 +133,8 @@ static void print_threads(const struct plan *p, const struct run_estimate *r)
         bool told = false;
         for (int k = 0; r[i].alone && k < p->nrun; k++)
             if (r[k].alone && strcmp(r[k].alone, r[i].alone) == 0) same++, told = told || k < i;
-        if (r[i].alone && !told) printf("on one thread: %d of %d runs: %s\n", same, p->nrun, r[i].alone);
+        if (r[i].alone && !told)
+            printf("on one thread: %d of %d runs: %s\n", same, p->nrun, r[i].alone);
     }
 }
 
@@ -200,7 +201,8 @@ static void read_class(const struct column *c, const void *row, struct column_va
 
 /* One kind of omission in JSON. */
 static const struct column kind_column[] = {
-    {"bound", COLUMN_REAL, KIND(omission.bound), .absent = ABSENT_ZERO, .doc = "largest relative change of a result"},
+    {"bound", COLUMN_REAL, KIND(omission.bound), .absent = ABSENT_ZERO,
+     .doc = "largest relative change of a result"},
     {"class", COLUMN_STRING, .value = read_class, .doc = "exact or bounded"},
     {"runs", COLUMN_INT, KIND(runs), .doc = "that leave it out"},
     {"what", COLUMN_CHARS, KIND(omission.what), .doc = "was left out"},
@@ -235,9 +237,11 @@ static const struct column planned_column[] = {
     {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
     {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
     {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},
-    {"host_threads", COLUMN_INT, ESTIMATE(threads), .doc = "that run its ranks on this computer, with --threads auto"},
+    {"host_threads", COLUMN_INT, ESTIMATE(threads),
+     .doc = "that run its ranks on this computer, with --threads auto"},
     {"kernel", COLUMN_CHARS, SPEC(kernel.name), .doc = "the parallel program"},
-    {"level", COLUMN_STRING, .value = read_level, .more = "machine.network.level", .doc = "of the network"},
+    {"level", COLUMN_STRING, .value = read_level, .more = "machine.network.level",
+     .doc = "of the network"},
     {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "its name"},
     {"messages", COLUMN_REAL, ESTIMATE(messages), .doc = "estimated"},
     {"ranks", COLUMN_INT, SPEC(nrank), .doc = "virtual processors"},

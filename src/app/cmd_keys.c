@@ -44,11 +44,13 @@ static void show_kind(const struct field *f, struct shown *s)
     /* The same order as field_set reads them in. */
     struct text t = {0};
     if (f->choice != NULL)
-        for (int i = 0; f->choice[i] != NULL; i++) text_add(&t, "%s%s", i > 0 ? " | " : "", f->choice[i]);
+        for (int i = 0; f->choice[i] != NULL; i++)
+            text_add(&t, "%s%s", i > 0 ? " | " : "", f->choice[i]);
     else if (f->kind == FIELD_BOOL) text_add(&t, "true | false");
     else if (f->kind == FIELD_TEXT) text_add(&t, "text");
     else if (f->kind == FIELD_SEGMENTS) text_add(&t, "list of segments");
-    else if (f->kind == FIELD_INTS || f->kind == FIELD_INT_LIST) text_add(&t, "list of whole numbers");
+    else if (f->kind == FIELD_INTS || f->kind == FIELD_INT_LIST)
+        text_add(&t, "list of whole numbers");
     else if (f->kind == FIELD_PAIR_LIST) text_add(&t, "list of pairs");
     else if (f->unit != UNIT_NONE)
         text_add(&t, "%s%s (%s)", f->kind == FIELD_REALS ? "list, each " : "", units_name(f->unit),

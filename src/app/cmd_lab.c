@@ -96,11 +96,15 @@ static void json_answers(const struct column *c, const void *row, struct json *j
     columns_json_list(&answer_columns, r->answer, r->nanswer, sizeof *r->answer, j);
 }
 static const struct column result_column[] = {
-    {"folder", COLUMN_STRING, RESULT(folder), .title = "folder", .width = -24, .doc = "of the attempt"},
+    {"folder", COLUMN_STRING, RESULT(folder), .title = "folder", .width = -24,
+     .doc = "of the attempt"},
     {"lab", COLUMN_STRING, RESULT(lab), .title = "lab", .width = -14, .doc = "its name"},
-    {"student", COLUMN_STRING, RESULT(student), .title = "student", .width = -16, .doc = "the variant"},
-    {"right", COLUMN_INT, RESULT(right), .title = "right", .width = 5, .doc = "questions that are right"},
-    {"questions", COLUMN_INT, RESULT(nanswer), .title = "of", .width = 3, .doc = "how many there are"},
+    {"student", COLUMN_STRING, RESULT(student), .title = "student", .width = -16,
+     .doc = "the variant"},
+    {"right", COLUMN_INT, RESULT(right), .title = "right", .width = 5,
+     .doc = "questions that are right"},
+    {"questions", COLUMN_INT, RESULT(nanswer), .title = "of", .width = 3,
+     .doc = "how many there are"},
     {"program", COLUMN_STRING, RESULT(program), .title = "program", .before = "  ",
      .doc = "ok, or how its run ended"},
     {"answers", COLUMN_STRING, .json = json_answers, .doc = "question by question"},
@@ -133,7 +137,8 @@ static int check_all(const struct common *c, bool brief)
         struct err e;
         struct lab_result r;
         err_clear(&e);
-        /* The worst that was found is the exit status; a wrong answer is less than a broken file. */
+        /* The worst that was found is the exit status; a wrong answer is less than a broken
+         * file. */
         if (!lab_check(&r, folder[i], a, &e)) {
             if (c->json) common_error_json(&j, folder[i], &e);
             err_print(&e);

@@ -10,14 +10,11 @@
 static const char doc[] =
     "Print the most heavily loaded links of run RUN (column id of table run) in the database DB: "
     "messages, bytes, busy time and waiting time. First the ten network links with the longest "
-    "waiting time, "
-    "then the ten ports of nodes.\n\n"
+    "waiting time, then the ten ports of nodes.\n\n"
     "Example: mimdsim links mimdsim.db\n"
-    "\vThe default RUN is the stored run with the longest waiting time. Link loads are recorded "
-    "by scenarios with "
-    "`record: {links: true}`. A port of a node has no router at one end: an injection port leads "
-    "into the network, an "
-    "ejection port out of it.";
+    "\vThe default RUN is the stored run with the longest waiting time. Link loads are recorded by "
+    "scenarios with `record: {links: true}`. A port of a node has no router at one end: an "
+    "injection port leads into the network, an ejection port out of it.";
 
 /* The run in which messages waited longest for links: the one that a user most likely asks
  * about. */
@@ -30,23 +27,18 @@ static const char any_sql[] = "SELECT 1 FROM link_load WHERE run_id = CAST(?1 AS
 
 /* LIMIT in each half, so that SQLite keeps ten rows while it reads, and sorts no table. */
 static const char links_sql[] =
-    "WITH top AS (SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)"
-    "  AND from_router IS NOT NULL AND to_router IS NOT NULL"
-    "  ORDER BY queue_ps DESC, busy_ps DESC, link LIMIT 10)"
-    " UNION ALL SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)"
-    "  AND (from_router IS NULL OR to_router IS NULL)"
-    "  ORDER BY queue_ps DESC, busy_ps DESC, link LIMIT 10)),"
-    " named AS (SELECT *, CASE WHEN from_router IS NULL THEN 'injection' WHEN to_router IS NULL "
-    "THEN 'ejection'"
-    "  ELSE 'network' END AS kind, from_router IS NULL OR to_router IS NULL AS port FROM top)"
-    " SELECT l.run_id, r.machine, r.topology, r.level, r.kernel, r.P, l.kind,"
-    " row_number() OVER (PARTITION BY l.port ORDER BY l.queue_ps DESC, l.busy_ps DESC, l.link) AS "
-    "place,"
-    " l.link, l.from_router, l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps / 1e6 AS "
-    "busy_us,"
-    " round(100.0 * l.busy_ps / nullif(r.makespan_ps, 0), 1) AS busy_percent, l.queue_ps / 1e6 AS "
-    "queue_us"
-    " FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, place";
+    "WITH top AS (SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)  AND "
+    "from_router IS NOT NULL AND to_router IS NOT NULL  ORDER BY queue_ps DESC, busy_ps DESC, link "
+    "LIMIT 10) UNION ALL SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER) "
+    " AND (from_router IS NULL OR to_router IS NULL)  ORDER BY queue_ps DESC, busy_ps DESC, link "
+    "LIMIT 10)), named AS (SELECT *, CASE WHEN from_router IS NULL THEN 'injection' WHEN to_router "
+    "IS NULL THEN 'ejection'  ELSE 'network' END AS kind, from_router IS NULL OR to_router IS NULL "
+    "AS port FROM top) SELECT l.run_id, r.machine, r.topology, r.level, r.kernel, r.P, l.kind, "
+    "row_number() OVER (PARTITION BY l.port ORDER BY l.queue_ps DESC, l.busy_ps DESC, l.link) AS "
+    "place, l.link, l.from_router, l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps / 1e6 "
+    "AS busy_us, round(100.0 * l.busy_ps / nullif(r.makespan_ps, 0), 1) AS busy_percent, "
+    "l.queue_ps / 1e6 AS queue_us FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, "
+    "place";
 
 /* One value is enough. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)

@@ -21,24 +21,19 @@ static const char keys_of_files[] =
     "- `schema_version`: 1.\n"
     "- `question`: one line of text.\n"
     "- `machine`, `kernel`, `level`, `n`: abbreviations of `machine.name` (or a file), "
-    "`kernel.name`, "
-    "`machine.network.level`, "
-    "`model.n`.\n"
-    "- `program`: abbreviation of `program.file`, a program of your own instead of `kernel`; what it "
-    "declares are keys, too.\n"
+    "`kernel.name`, `machine.network.level`, `model.n`.\n"
+    "- `program`: abbreviation of `program.file`, a program of your own instead of `kernel`; what "
+    "it declares are keys, too.\n"
     "- `ranks`: a number, or `n` for one rank per body.\n"
     "- `n_over_p`: bodies per processor, instead of `n`.\n"
     "- `sweep`: keys with lists of values, combined in every way: `{n: [8, 64], kernel.solver: "
-    "[cr, pcr]}`; a list "
-    "instead of a value does the same.\n"
+    "[cr, pcr]}`; a list instead of a value does the same.\n"
     "- `only`: run only these points: `n >= ranks`, `ranks <= processors`.\n"
     "- `repetitions`: number of runs of a point that has noise, with different seeds.\n"
     "- `figures`: the figures that `mimdsim paper` draws from it.\n\n"
     "Give the settings below as `kernel: {solver: cr}` or `kernel.solver: cr`, or with `--set "
-    "kernel.solver=cr`. A "
-    "machine file has the settings of `machine` without that word, `schema_version`, and `base`, "
-    "the machine that it "
-    "starts from.\n\n";
+    "kernel.solver=cr`. A machine file has the settings of `machine` without that word, "
+    "`schema_version`, and `base`, the machine that it starts from.\n\n";
 
 /* Every key with its meaning, in the order of the manual: Markdown for people, pairs for
  * programs. */
@@ -98,7 +93,8 @@ int cmd_kernels(int argc, char **argv)
 {
     struct common c;
     common_parse(&c, argc, argv, 0, "", 
-                 "List the built-in programs; `mimdsim programs` lists examples and your own, too.\n\n"
+                 "List the built-in programs; `mimdsim programs` lists examples and your own, "
+                 "too.\n\n"
                  "Example: mimdsim kernels\n", 0, 0);
     /* Names and titles from the table of programs. */
     struct catalogue k = catalogue_of_kernels();

@@ -10,14 +10,10 @@ static const char doc[] =
     "Put the runs of the databases IN... into OUT, which is made where there is none.\n\n"
     "Example: mimdsim merge fig6.db one.db two.db\n"
     "\vA run is known by its settings, seed and repetition. A run that OUT holds already stays; "
-    "one that did not "
-    "end ok there is replaced by one that did. Merging the same databases again changes nothing. "
-    "When the same run "
-    "has two different digests, nothing is merged from that database, and the message names both "
-    "builds (exit 65). "
-    "Verdicts on claims and explanations are not merged, because they judge all runs together: "
-    "make them again with "
-    "`mimdsim claims`.";
+    "one that did not end ok there is replaced by one that did. Merging the same databases again "
+    "changes nothing. When the same run has two different digests, nothing is merged from that "
+    "database, and the message names both builds (exit 65). Verdicts on claims and explanations "
+    "are not merged, because they judge all runs together: make them again with `mimdsim claims`.";
 
 /* One line, or one object, for a database that was merged. */
 static void tell(const struct common *c, struct json *j, const char *from,

@@ -16,14 +16,11 @@ static const char doc[] =
     "\vPROGRAM is an image of mimdsim cc, c++ or f90, or its source; it runs with all your rights. "
     "What follows it are its arguments. MPI_Wtime and all clocks show simulated time. The exit "
     "status is that of the first rank that does not end with 0, or of MPI_Abort. Nothing is "
-    "stored: "
-    "`mimdsim run` with `program: PROGRAM` in a scenario does that.\n\n"
+    "stored: `mimdsim run` with `program: PROGRAM` in a scenario does that.\n\n"
     "-n N: number of ranks (default 1). --level LEVEL: of the network. -l: each line with its rank "
     "before it. --limit SECONDS: processor time after which it has failed (default 600 s). --debug "
-    "RANK: "
-    "that rank's program under gdb, stopped where its main begins. With -n "
-    "above 1, or with -m, the predicted time is written to standard error, unless --quiet is "
-    "given.";
+    "RANK: that rank's program under gdb, stopped where its main begins. With -n above 1, or with "
+    "-m, the predicted time is written to standard error, unless --quiet is given.";
 
 /* What mpirun has of its own, and where its arguments end. */
 struct own {

@@ -12,21 +12,17 @@
 
 static const char doc[] =
     "Run the reference cases of each FILE at the network levels, print the error of each case and "
-    "statistics, and compare "
-    "them with the accuracy stated for each level and class of case. A message list without "
-    "reference times is simulated and "
-    "its times are printed.\n\n"
+    "statistics, and compare them with the accuracy stated for each level and class of case. A "
+    "message list without reference times is simulated and its times are printed.\n\n"
     "Example: mimdsim netcheck tests/data/net/makespan.json --level packet\n"
     "\v      --within=PERCENT       require every error to be within this, instead of the stated "
     "accuracy\n"
     "      --stated               print the stated accuracies and run nothing\n\n"
     "The form of a case follows from its keys: step (distance), list (trace), hand (messages), "
-    "load (points), saturation "
-    "(saturation_low). With --json one FILE gives one object, several give a list of objects. "
-    "Cases that a level cannot run "
-    "are counted as skipped, with the reason. The exit status is 1 if a verdict is FAIL, and 65 "
-    "if a file has an unknown form "
-    "or none of its cases can be run.";
+    "load (points), saturation (saturation_low). With --json one FILE gives one object, several "
+    "give a list of objects. Cases that a level cannot run are counted as skipped, with the "
+    "reason. The exit status is 1 if a verdict is FAIL, and 65 if a file has an unknown form or "
+    "none of its cases can be run.";
 
 /* One word, or the nearest one in the message. */
 static bool level_of(const char *word, enum network_level *level, struct err *e)

@@ -10,12 +10,10 @@
 
 static const char doc[] =
     "Write NAME.c, a small parallel program with everything it needs, and NAME.yaml, a scenario "
-    "that "
-    "runs it on three machines.\n\n"
+    "that runs it on three machines.\n\n"
     "Example: mimdsim new heat\n"
     "\vThe program compiles and runs as it is (`mimdsim run NAME.c`); its comments say what to "
-    "change. "
-    "Files that are there already are never overwritten. docs/own-program.md is the guide.";
+    "change. Files that are there already are never overwritten. docs/own-program.md is the guide.";
 
 /* A name that can be a file's in any folder, a word in a database and a title in a figure. No
  * slash: a program belongs into the folder where its author is, and beside its scenario. */
@@ -46,6 +44,7 @@ static bool make_file(const char *name, const char *ending, struct err *e)
 {
     struct text path = {0}, template = {0}, content = {0};
     text_add(&path, "%s/templates/program%s", plan_data_dir(), ending);
+    /* A template without marks is taken as it is. */
     bool fine = text_read_file(&template, path.s, e);
     if (fine) fill(&content, template.s, name);
     path.length = 0;
@@ -68,6 +67,7 @@ static bool make_both(const char *name, struct err *e)
                 err_set(e, ERR_CREATE, "%s is there already; choose another name, or move it away",
                         scenario.s);
     fine = fine && make_file(name, ".c", e);
+    /* The scenario failed: its program, made a moment ago, goes with it. */
     if (fine && !make_file(name, ".yaml", e)) {
         unlink(source.s);
         fine = false;

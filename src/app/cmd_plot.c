@@ -17,7 +17,8 @@ static const char doc[] =
     "Draw FIGURE, any column over another, or the rows of your own query QUERY.sql from the "
     "database DB into a folder: NAME.png, .svg, .csv, the script .gp and .provenance.\n\n"
     "Example: mimdsim plot mimdsim.db fig6 --dir figures\n"
-    "Example: mimdsim plot mimdsim.db --x n --y speedup --by machine,level --where kernel=dynamics\n"
+    "Example: mimdsim plot mimdsim.db --x n --y speedup --by machine,level --where "
+    "kernel=dynamics\n"
     "\vWithout FIGURE: list the available figures, what each shows, and the command that makes "
     "the runs it needs.\n\n"
     "KEY is a column of the view v_run or of table run, a setting such as "
@@ -154,7 +155,8 @@ static void print_picture(const struct common *c, const char *name)
 }
 
 /* One picture of what the options ask for, from stored runs or from the rows of a query. */
-static bool draw_request(const struct common *c, struct store *s, struct plot_request *r, struct err *e)
+static bool draw_request(const struct common *c, struct store *s, struct plot_request *r,
+                         struct err *e)
 {
     struct text sql = {0}, told = {0};
     struct arena *a = arena_create();
@@ -162,7 +164,8 @@ static bool draw_request(const struct common *c, struct store *s, struct plot_re
     const char *file = c->narg == 2 ? c->arg[1] : NULL;
     bool ok = c->narg <= 2 || err_set(e, ERR_USAGE, "one picture at a time: '%s'", c->arg[2]);
     if (ok && file != NULL && !is_query(file))
-        ok = err_set(e, ERR_USAGE, "--x and --y draw runs or the rows of QUERY.sql, not figure '%s'", file);
+        ok = err_set(e, ERR_USAGE,
+                     "--x and --y draw runs or the rows of QUERY.sql, not figure '%s'", file);
     if (ok && file != NULL) ok = text_read_file(&sql, file, e);
     if (ok && file != NULL) r->query = sql.s != NULL ? sql.s : "";
     plot_options_name(r, file, a);
@@ -178,7 +181,8 @@ static bool draw_request(const struct common *c, struct store *s, struct plot_re
 }
 
 /* Figures in the order of the command line; the first failure ends it. */
-static bool draw_figures(const struct common *c, struct store *s, const struct plot_request *r, struct err *e)
+static bool draw_figures(const struct common *c, struct store *s, const struct plot_request *r,
+                         struct err *e)
 {
     struct text told = {0};
     /* Conditions make the database smaller: every figure then shows what is left. */
@@ -198,16 +202,19 @@ int cmd_plot(int argc, char **argv)
     struct arena *a = arena_create();
     struct err e;
     err_clear(&e);
-    /* What belongs to this verb alone is taken out first; what was wrong in it is told after --help had its chance. */
+    /* What belongs to this verb alone is taken out first; what was wrong in it is told after --help
+     * had its chance. */
     bool axes = false, columns = take_flag(&argc, argv, "--columns");
     const bool right = plot_options_take(&r, &argc, argv, &axes, a, &e);
     common_parse(&c, argc, argv, TAKES_DIR, "[DB [FIGURE...|QUERY.sql]]", doc, 0, 64);
-    if (right && axes && c.narg == 0) err_set(&e, ERR_USAGE, "the database is missing: `mimdsim plot DB --x ...`");
+    if (right && axes && c.narg == 0)
+        err_set(&e, ERR_USAGE, "the database is missing: `mimdsim plot DB --x ...`");
     bool ok = right && e.kind == ERR_NONE;
     struct store *s = ok && c.narg > 0 ? open_database(&c, &e) : NULL;
     ok = ok && (s != NULL || c.narg == 0);
     /* A database alone lists figures as well: the user wants to choose one. */
-    /* What is asked for: a list of columns, one picture, the list of figures, or figures by name. */
+    /* What is asked for: a list of columns, one picture, the list of figures, or figures by
+     * name. */
     if (ok && columns && s != NULL) ok = plot_columns(s, stdout, &e);
     else if (ok && (axes || (c.narg == 2 && is_query(c.arg[1])))) ok = draw_request(&c, s, &r, &e);
     else if (ok && c.narg < 2) list_figures(&c);

@@ -12,9 +12,8 @@
 static const char doc[] =
     "Run one SQL query on the database DB and print its rows.\n\n"
     "Example: mimdsim query mimdsim.db 'SELECT n, P, baseline, speedup FROM v_speedup'\n"
-    "         mimdsim query --schema\n\v"
-    "--schema: instead, print every table, view and column of the database with its type and "
-    "meaning, as Markdown.\n"
+    "         mimdsim query --schema\n\v--schema: instead, print every table, view and column of "
+    "the database with its type and meaning, as Markdown.\n"
     "\n--upgrade: make DB, which an older version of the program made, a database of this version "
     "first. The old one is kept beside it. SQL may then be left out. Verbs that only read an older "
     "database read a temporary upgraded copy; verbs that write to one upgrade it as --upgrade "

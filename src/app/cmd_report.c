@@ -61,7 +61,8 @@ static bool draw(struct report *r, char *name)
     /* The name is kept, or freed here. */
     if (drawn && !has_section(name) && r->nfigure < MOST_FIGURES) r->figure[r->nfigure++] = name;
     else free(name);
-    /* No rows: the figure is of another study. A description that cannot be read is none of that. */
+    /* No rows: the figure is of another study. A description that cannot be read is none of
+     * that. */
     const bool no_rows = e.kind == ERR_NO_INPUT && e.file[0] == '\0';
     if (!drawn && !no_rows) *r->e = e;
     return drawn || no_rows;
@@ -96,8 +97,8 @@ static bool add_plan(void *context, int ncolumn, const char *const *name, const 
     else plan_free(&r->plan[r->nplan]);
     /* One that is there and cannot be read is worth a word. */
     if (ignored.file[0] && ignored.kind != ERR_DATA && ignored.kind != ERR_CONFIG)
-        fprintf(stderr, "mimdsim: the machine of scenario %s is left out of the report: %s: %s\n", value[0],
-                ignored.file, ignored.text);
+        fprintf(stderr, "mimdsim: the machine of scenario %s is left out of the report: %s: %s\n",
+                value[0], ignored.file, ignored.text);
     return true;
 }
 
@@ -172,7 +173,8 @@ int cmd_report(int argc, char **argv)
     for (int i = 0; i < r->nfigure; i++) free(r->figure[i]);
     for (int i = 0; i < r->nplan; i++) plan_free(&r->plan[i]);
     const int undrawn = r->undrawn;
-    /* The report is there, with the numbers; that its pictures are not is a failure all the same. */
+    /* The report is there, with the numbers; that its pictures are not is a failure all the
+     * same. */
     if (ok && undrawn > 0)
         fprintf(stderr, "mimdsim: the report %s.html has no pictures, or not all of them\n", stem);
     free(r);

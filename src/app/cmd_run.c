@@ -27,43 +27,43 @@ static const char doc[] =
     "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 "
     "MB/s\"\n"
     "\vRuns that are stored already are not repeated, unless --force is given. If the result of a "
-    "run is wrong, the run is "
-    "stored as invalid and the exit status is 1; a deadlock ends with 70. If a point cannot run, "
-    "its worker process dies, or "
-    "simulated time overflows (13.3 days), it is stored as failed, with the reason. The other "
-    "points run, and the exit status "
-    "is 1. A plan with no valid point is refused. Failed points are tried again the next time.\n\n"
-    "--shard K/N: only the runs of shard K of N, so that N hosts share the plan (mimdsim merge joins "
-    "their databases). --point ID: only this run of the plan (mimdsim plan lists them).\n\n"
-    "PROGRAM: a program of your own, as source or as made by mimdsim cc, makes a scenario by itself "
-    "(t3e-300, 1 to 16 ranks); see docs/own-program.md. --limit SECONDS: a run of such a program has "
-    "failed when it takes more processor time than this (default 600 s).\n\n"
-    "--campaign mpi: the processes that mpirun has started share the plan, and the first one stores "
-    "the results: mpirun -n 8 mimdsim run fig6 --campaign mpi. Each makes --jobs runs at a time (default 1).\n\n"
-    "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level loggp, every "
-    "message eager, one processor a node; docs/parallel.md), several run its ranks at once, with the same results "
-    "to the bit. "
-    "auto, the default: as many as help, on the processors that --jobs leaves.\n\n"
-    "--spread mpi: the processes that mpirun has started share the ranks of each run, so that its memory is divided "
-    "among them: mpirun -n 2 mimdsim run SCENARIO --spread mpi. Runs that need the order of time (see --threads) stay "
-    "in the first process.\n\n"
-    "--uncertainty N: draw the uncertain parameters of the machine from their ranges, run each point again with them, "
-    "and tell the band that 90 % of the predicted times lie in, and which parameter it comes from: "
-    "N (k + 2) runs for k parameters, or 2 N with --bands-only (docs/studies.md).\n\n"
-    "The table shows what says something of these runs, and how far each time is known: the error of the network "
-    "level, of the machine's parameters, of the arithmetic. --columns NAMES: these columns instead (names with commas, "
-    "or all). --csv: all of them, for programs.\n\n"
-    "A scenario with `optimise:` is searched: the answer is the best setting for each point of the other axes "
+    "run is wrong, the run is stored as invalid and the exit status is 1; a deadlock ends with 70. "
+    "If a point cannot run, its worker process dies, or simulated time overflows (13.3 days), it "
+    "is stored as failed, with the reason. The other points run, and the exit status is 1. A plan "
+    "with no valid point is refused. Failed points are tried again the next time.\n\n"
+    "--shard K/N: only the runs of shard K of N, so that N hosts share the plan (mimdsim merge "
+    "joins their databases). --point ID: only this run of the plan (mimdsim plan lists them).\n\n"
+    "PROGRAM: a program of your own, as source or as made by mimdsim cc, makes a scenario by "
+    "itself (t3e-300, 1 to 16 ranks); see docs/own-program.md. --limit SECONDS: a run of such a "
+    "program has failed when it takes more processor time than this (default 600 s).\n\n"
+    "--campaign mpi: the processes that mpirun has started share the plan, and the first one "
+    "stores the results: mpirun -n 8 mimdsim run fig6 --campaign mpi. Each makes --jobs runs at a "
+    "time (default 1).\n\n"
+    "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level "
+    "loggp, every message eager, one processor a node; docs/parallel.md), several run its ranks at "
+    "once, with the same results to the bit. auto, the default: as many as help, on the processors "
+    "that --jobs leaves.\n\n"
+    "--spread mpi: the processes that mpirun has started share the ranks of each run, so that its "
+    "memory is divided among them: mpirun -n 2 mimdsim run SCENARIO --spread mpi. Runs that need "
+    "the order of time (see --threads) stay in the first process.\n\n"
+    "--uncertainty N: draw the uncertain parameters of the machine from their ranges, run each "
+    "point again with them, and tell the band that 90 % of the predicted times lie in, and which "
+    "parameter it comes from: N (k + 2) runs for k parameters, or 2 N with --bands-only "
     "(docs/studies.md).\n\n"
+    "The table shows what says something of these runs, and how far each time is known: the error "
+    "of the network level, of the machine's parameters, of the arithmetic. --columns NAMES: these "
+    "columns instead (names with commas, or all). --csv: all of them, for programs.\n\n"
+    "A scenario with `optimise:` is searched: the answer is the best setting for each point of the "
+    "other axes (docs/studies.md).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
-    "error bound of leaving it "
-    "out); the predicted time includes it.";
+    "error bound of leaving it out); the predicted time includes it.";
 
 /* What run_campaign's results are counted and stored by. */
 struct keep {
     struct store *store;
     struct err *error;
-    const struct run_spec *run; /* (the plan's number) the runs that are made, and how each is executed */
+    /* (the plan's number) the runs that are made, and how each is executed */
+    const struct run_spec *run;
     struct run_order *order; /* in step with `run` */
     int invalid, deadlock, redundant, refined, alone; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
@@ -96,8 +96,8 @@ static void say_wrong(struct keep *k, const struct run_spec *spec, const struct 
     text_copy(k->reason, sizeof k->reason, reason);
     if (k->alike++ >= TOLD) k->untold++;
     else
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
-                r->text);
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody,
+                spec->nrank, r->text);
 }
 
 /* One result, in plan order: counted, told where it is no plain success, stored. Remarks that
@@ -112,14 +112,17 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     k->deadlock += r->status == RUN_DEADLOCK;
     if (r->status != RUN_OK) say_wrong(k, spec, r);
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
-        fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
+        fprintf(stderr,
+                "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
     if (r->alone[0] && k->alone++ == 0 && !k->quiet)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
-                k->spread ? "in one process" : "on one thread", r->alone);
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s: %s\n", spec->kernel.name,
+                spec->model.nbody, spec->nrank, k->spread ? "in one process" : "on one thread",
+                r->alone);
     if (run_result_refined(r) && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
-                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the residual was %.2g\n",
+                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the "
+                "residual was %.2g\n",
                 spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
                 r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
@@ -128,14 +131,15 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     return stored;
 }
 
-/* A launcher ends all processes when one has died, without a word from this one. So the run is stored as failed before
- * it begins, and its result takes the place of that. */
+/* A launcher ends all processes when one has died, without a word from this one. So the run is
+ * stored as failed before it begins, and its result takes the place of that. */
 static bool begin_spread(void *context, const struct run_spec *spec)
 {
     struct keep *k = context;
     struct err why;
     err_clear(&why);
-    err_set(&why, ERR_INTERNAL, "the job ended while its processes made this run: one of them died, or it was stopped");
+    err_set(&why, ERR_INTERNAL,
+            "the job ended while its processes made this run: one of them died, or it was stopped");
     struct run_result r = run_refused(&why);
     r.nrank = spec->nrank;
     return store_put(k->store, spec, &k->order[spec - k->run], &r, k->error);
@@ -171,9 +175,10 @@ static bool take_options(int *argc, char **argv, struct asked *a, struct err *e)
     a->keep_all = take_flag(argc, argv, "--keep-all");
     const char *shard = take_value(argc, argv, "--shard");
     a->part.point = take_value(argc, argv, "--point");
-    return take_seconds(argc, argv, "--limit", &a->limit, e) && take_threads(argc, argv, &a->threads, e) &&
-           uncertainty_take(argc, argv, &a->uncertainty, e) && run_table_take(argc, argv, &a->look, e) &&
-           shard_parse(shard, &a->part.shard, e);
+    return take_seconds(argc, argv, "--limit", &a->limit, e) &&
+           take_threads(argc, argv, &a->threads, e) &&
+           uncertainty_take(argc, argv, &a->uncertainty, e) &&
+           run_table_take(argc, argv, &a->look, e) && shard_parse(shard, &a->part.shard, e);
 }
 
 /* A point is one run: what names none, or several, was mistyped or cut too short. */
@@ -186,10 +191,10 @@ static bool check_point(const char *point, const struct plan *p, struct err *e)
                    n == 0 ? "no run of this plan" : "the beginning of several runs");
 }
 
-/* What is stored already, and what other shards make. The plan's own runs decide about the shard: every host reads
- * the same, before levels are settled by what its database knows. */
-static bool *skipped(struct store *s, const struct plan *p, const struct run_spec *settled, const struct part *part,
-                     bool force)
+/* What is stored already, and what other shards make. The plan's own runs decide about the shard:
+ * every host reads the same, before levels are settled by what its database knows. */
+static bool *skipped(struct store *s, const struct plan *p, const struct run_spec *settled,
+                     const struct part *part, bool force)
 {
     bool *skip = memory_zeroed((size_t)p->nrun, sizeof *skip);
     for (int i = 0; i < p->nrun; i++)
@@ -199,7 +204,8 @@ static bool *skipped(struct store *s, const struct plan *p, const struct run_spe
 }
 
 /* How many runs are left to be made; what is stored already is told, as it takes no time. */
-static int say_skipped(const struct common *c, const struct plan *p, const struct part *part, const bool *skip)
+static int say_skipped(const struct common *c, const struct plan *p, const struct part *part,
+                       const bool *skip)
 {
     int mine = 0, todo = 0;
     for (int i = 0; i < p->nrun; i++) {
@@ -207,7 +213,8 @@ static int say_skipped(const struct common *c, const struct plan *p, const struc
         todo += !skip[i];
     }
     if (todo < mine && !c->quiet)
-        fprintf(stderr, "mimdsim: %d of %d runs are stored already (--force repeats them)\n", mine - todo, mine);
+        fprintf(stderr, "mimdsim: %d of %d runs are stored already (--force repeats them)\n",
+                mine - todo, mine);
     return todo;
 }
 
@@ -218,7 +225,8 @@ static struct run_spec *orders_usual(const struct plan *p, struct keep *k, struc
     memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
     k->run = settled->run = run;
     k->order = TAKE(p->arena, p->nrun, struct run_order);
-    const struct run_order usual = {.keep = k->keep_all ? KEEP_ALL : 0, .host_limit = k->limit, .threads = k->threads};
+    const struct run_order usual = {
+        .keep = k->keep_all ? KEEP_ALL : 0, .host_limit = k->limit, .threads = k->threads};
     for (int i = 0; i < p->nrun; i++) k->order[i] = usual;
     return run;
 }
@@ -231,12 +239,15 @@ static void say_unused(const struct plan *p)
 
 static void say_failed(const struct keep *k)
 {
-    fprintf(stderr, "mimdsim: %d of %d runs failed; each is stored with its reason, and tried again next time\n",
+    fprintf(stderr,
+            "mimdsim: %d of %d runs failed; each is stored with its reason, and tried again next "
+            "time\n",
             k->failed, k->done);
 }
 
 /* Runs that are stored already get the name that is given now; without one they keep theirs. */
-static bool call_stored(struct store *s, const struct run_spec *run, const bool *skip, int n, struct err *e)
+static bool call_stored(struct store *s, const struct run_spec *run, const bool *skip, int n,
+                        struct err *e)
 {
     /* One transaction for all: a name costs no more than a row. */
     bool ok = store_begin(s, e);
@@ -248,8 +259,8 @@ static bool call_stored(struct store *s, const struct run_spec *run, const bool 
 }
 
 /* Settle levels, leave out what is stored, run the rest, print all. */
-static bool answer(const struct common *c, const struct plan *p, const struct asked *asked, struct job *job,
-                   struct keep *k, struct err *e)
+static bool answer(const struct common *c, const struct plan *p, const struct asked *asked,
+                   struct job *job, struct keep *k, struct err *e)
 {
     struct plan settled = *p;
     if (!c->quiet) say_unused(p);
@@ -264,9 +275,11 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
     /* a launcher has its own way of ending a job */
     interrupt_begin(&k->interrupt, c->database, job->on ? 0 : todo);
-    if (ok && k->spread) ok = job_spread(job, p, run, k->order, skip, begin_spread, keep_result, k, e);
+    if (ok && k->spread)
+        ok = job_spread(job, p, run, k->order, skip, begin_spread, keep_result, k, e);
     else if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
-    else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    else if (ok)
+        ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     interrupt_end(&k->interrupt);
     free(skip);
     say_rest(k);
@@ -274,7 +287,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     const struct uncertainty_options *u = &asked->uncertainty;
     ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
          (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
-    const bool search = settled.search != NULL && asked->part.shard.of == 0 && asked->part.point == NULL;
+    const bool search =
+        settled.search != NULL && asked->part.shard.of == 0 && asked->part.point == NULL;
     ok = ok && (!search || search_run(&settled, k->store, e));
     if (ok && search && asked->look.columns == NULL)
         return search_print(k->store, &settled, &asked->look, stdout, e);
@@ -284,7 +298,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
 }
 
 /* What the other processes of a job do of this: they make runs, and store and print nothing. */
-static bool help_out(struct job *job, const struct common *c, const struct plan *p, struct keep *k, struct err *e)
+static bool help_out(struct job *job, const struct common *c, const struct plan *p, struct keep *k,
+                     struct err *e)
 {
     struct plan settled = *p;
     struct run_spec *run = orders_usual(p, k, &settled);
@@ -294,7 +309,8 @@ static bool help_out(struct job *job, const struct common *c, const struct plan 
 
 /* Worst first: an error of the command, a deadlock, a plan of which nothing could run, wrong or
  * failed runs. */
-static int exit_status(bool ok, const struct keep *k, bool none, const struct common *c, const struct err *e)
+static int exit_status(bool ok, const struct keep *k, bool none, const struct common *c,
+                       const struct err *e)
 {
     if (!ok && e->kind == ERR_NONE) return 0; /* the first process of a job says why */
     if (!ok) return common_fail(c, e);
@@ -308,8 +324,10 @@ static int exit_status(bool ok, const struct keep *k, bool none, const struct co
 static bool spread_parse(const char *spread, const char *campaign, struct err *e)
 {
     if (spread == NULL) return true;
-    if (strcmp(spread, "mpi") != 0) return err_set(e, ERR_USAGE, "--spread '%.40s': expected mpi", spread);
-    return campaign == NULL || err_set(e, ERR_USAGE, "--spread and --campaign: a job does one or the other");
+    if (strcmp(spread, "mpi") != 0)
+        return err_set(e, ERR_USAGE, "--spread '%.40s': expected mpi", spread);
+    return campaign == NULL ||
+           err_set(e, ERR_USAGE, "--spread and --campaign: a job does one or the other");
 }
 
 /* The whole of it, on one process or on several. */
@@ -320,23 +338,32 @@ int cmd_run(int argc, char **argv)
     struct job job = {.kept = -1};
     struct err e;
     err_clear(&e);
-    const char *campaign = take_value(&argc, argv, "--campaign"), *spread = take_value(&argc, argv, "--spread");
+    const char *campaign = take_value(&argc, argv, "--campaign"),
+               *spread = take_value(&argc, argv, "--spread");
     const bool understood = take_options(&argc, argv, &asked, &e);
-    bool ok = spread_parse(spread, campaign, &e) && job_open(&job, spread ? spread : campaign, &e) && understood;
+    bool ok = spread_parse(spread, campaign, &e) &&
+              job_open(&job, spread ? spread : campaign, &e) && understood;
     /* The processes of a job share the processors already. */
     if (job.on && asked.threads == RUN_THREADS_AUTO) asked.threads = 1;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1,
+                 1);
     job_heard(&job, &c);
     asked.look.json = c.json;
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e, .quiet = c.quiet, .limit = asked.limit, .keep_all = asked.keep_all,
-                     .threads = asked.threads, .spread = spread != NULL};
+    struct keep k = {.error = &e,
+                     .quiet = c.quiet,
+                     .limit = asked.limit,
+                     .keep_all = asked.keep_all,
+                     .threads = asked.threads,
+                     .spread = spread != NULL};
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
          uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e);
     ok = job_agree(&job, &p, ok, &e);
     c.force = c.force || asked.keep_all; /* the same results, but not the same row */
-    if (ok) ok = job.h.rank == 0 ? answer(&c, &p, &asked, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);
+    if (ok)
+        ok =
+            job.h.rank == 0 ? answer(&c, &p, &asked, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);
     store_close(k.store);
     const bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);

@@ -37,7 +37,8 @@ static bool keep_and_draw(const struct common *c, const struct stability_report 
 int cmd_stability(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR | TAKES_JOBS, "[SCENARIO]", doc, 0, 1);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR | TAKES_JOBS, "[SCENARIO]",
+                 doc, 0, 1);
     struct err e;
     err_clear(&e);
     struct plan p = {0};

@@ -23,8 +23,7 @@
 
 static const char doc[] =
     "Show the timeline of one run: run RUN of the database DB (default: the first with a "
-    "timeline), or the first point of "
-    "SCENARIO, which is run for this.\n\n"
+    "timeline), or the first point of SCENARIO, which is run for this.\n\n"
     "Example: mimdsim timeline scenarios/fig8.yaml\n"
     "         mimdsim timeline paper.db --format chrome\n"
     "         mimdsim timeline speedup-t3e --from \"300 us\" --to \"600 us\" --ranks 0..15\n"
@@ -138,10 +137,9 @@ static bool from_database(struct shown *t)
     const char *const param[] = {wanted};
     t->store = arguments_database(t->common, "", t->e);
     if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) || !store_query(t->store,
-                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine,"
-                                  " n, P), status,"
-                                  " text FROM run"
-                                  " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))",
+                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, "
+                                  "n, P), status, text FROM run WHERE id = ifnull(?1, (SELECT "
+                                  "min(run_id) FROM span))",
                                   1, param, NULL, take_first, t, t->e))
         return false;
     if (!t->run_id)
@@ -191,8 +189,9 @@ static void find_path(struct shown *t)
         t->result.path = again.path;
         t->result.npath = again.npath;
     } else if (!t->common->quiet)
-        fprintf(stderr, "mimdsim: the picture has no critical path: run %s cannot be made again: %s\n",
-                id, why);
+        fprintf(stderr,
+                "mimdsim: the picture has no critical path: run %s cannot be made again: %s\n", id,
+                why);
     text_free(&config);
 }
 
@@ -248,8 +247,8 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     /* What was cut is said: a trace that ends early would be misread. */
     if (ok && format == TRACE_GOAL && left_out > 0)
         fprintf(stderr,
-                "mimdsim: %s: %lld waits in barriers of the machine are written as computing times: "
-                "the language GOAL has no barriers\n",
+                "mimdsim: %s: %lld waits in barriers of the machine are written as computing "
+                "times: the language GOAL has no barriers\n",
                 path, (long long)left_out);
     else if (ok && left_out > 0)
         fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers "
@@ -283,7 +282,8 @@ static bool draw_picture(struct shown *t)
         fprintf(stderr, "mimdsim: no picture: the run takes no time\n");
         return true;
     }
-    bool ok = timeline_picture(t->store, plan_data_dir(), &v, "timeline", t->common->directory, t->e);
+    bool ok =
+        timeline_picture(t->store, plan_data_dir(), &v, "timeline", t->common->directory, t->e);
     if (ok && !t->common->quiet)
         fprintf(stderr, "mimdsim: %s/timeline.png\n", t->common->directory);
     return ok;

@@ -19,22 +19,17 @@
 
 static const char doc[] =
     "Run the micro-benchmarks of MACHINE (or of all machines) on the simulator and compare the "
-    "results with the published "
-    "values in machines/published.csv. Print the error of each and store the runs as check "
-    "points.\n\n"
+    "results with the published values in machines/published.csv. Print the error of each and "
+    "store the runs as check points.\n\n"
     "Example: mimdsim validate t3e-300\n"
     "         mimdsim validate network\n"
     "\v`network` compares every network level with the reference results in tests/data/net, or in "
-    "the given FILEs, and prints "
-    "a table of errors in Markdown. A value of evidence class E only shows that the machine file "
-    "was implemented correctly. "
-    "Limits of the error: 10 % for values used in calibration (5 % for wires and bisection rates, "
-    "20 % for values quoted from "
-    "memory, class PR), 30 % for values not used in it. The exit status is 1 if an error exceeds "
-    "its limit and the row "
-    "states no cause. The summary shows both kinds separately. For a single machine, exchanges "
-    "among 16 ranks are also "
-    "measured at every level of the network.";
+    "the given FILEs, and prints a table of errors in Markdown. A value of evidence class E only "
+    "shows that the machine file was implemented correctly. Limits of the error: 10 % for values "
+    "used in calibration (5 % for wires and bisection rates, 20 % for values quoted from memory, "
+    "class PR), 30 % for values not used in it. The exit status is 1 if an error exceeds its limit "
+    "and the row states no cause. The summary shows both kinds separately. For a single machine, "
+    "exchanges among 16 ranks are also measured at every level of the network.";
 
 /* One published figure: value, range, simulated value, error, evidence, whether it was used in
  * calibration, and the verdict with its reason. Numbers are in the file's own unit. */
@@ -218,11 +213,14 @@ static void write_group(const struct column *c, const void *row, struct json *j)
 
 /* Calibrated and other points apart: a value that was fitted proves nothing about the model. */
 static const struct column summary_column[] = {
-    {"calibrated", COLUMN_STRING, SUMMARY(calibrated), .json = write_group, .doc = "points used for calibration"},
-    {"estimated", COLUMN_INT, SUMMARY(estimated), .doc = "points of class E, which are in no group"},
+    {"calibrated", COLUMN_STRING, SUMMARY(calibrated), .json = write_group,
+     .doc = "points used for calibration"},
+    {"estimated", COLUMN_INT, SUMMARY(estimated),
+     .doc = "points of class E, which are in no group"},
     {"explained", COLUMN_INT, SUMMARY(explained), .doc = "points missed for a known cause"},
     {"failed", COLUMN_INT, SUMMARY(failed), .doc = "points missed without one"},
-    {"held", COLUMN_STRING, SUMMARY(held), .json = write_group, .doc = "points not used for calibration"},
+    {"held", COLUMN_STRING, SUMMARY(held), .json = write_group,
+     .doc = "points not used for calibration"},
     {"not_testable", COLUMN_INT, SUMMARY(untested), .doc = "points that the machine lacks"},
     {"points", COLUMN_INT, SUMMARY(shown), .doc = "all of them"},
 };

@@ -22,15 +22,13 @@ static const char doc[] = "Explain what the time of a run is made of: its critic
                           "again. A run of a scenario is stored with its critical path (tables "
                           "critical_path, sensitivity and ideal).\n\n"
                           "The critical path is the chain of operations that determines when the "
-                          "last rank ends: its durations add up to the "
-                          "run's time. At levels loggp and link the path goes through the message "
-                          "that holds a resource; at the other levels "
-                          "that waiting is 'contention'. `count` is how often the path pays the "
-                          "parameter: latencies, bytes, operations. The "
-                          "last column tells by which factor the time behind a parameter may grow "
-                          "before the run takes 5 % longer; it is "
-                          "confirmed by simulation. 'On another path' means that other operations "
-                          "determine the time by then.\n\n"
+                          "last rank ends: its durations add up to the run's time. At levels loggp "
+                          "and link the path goes through the message that holds a resource; at "
+                          "the other levels that waiting is 'contention'. `count` is how often the "
+                          "path pays the parameter: latencies, bytes, operations. The last column "
+                          "tells by which factor the time behind a parameter may grow before the "
+                          "run takes 5 % longer; it is confirmed by simulation. 'On another path' "
+                          "means that other operations determine the time by then.\n\n"
                           "--brief: the path and the contributions alone, from one run.";
 
 static const char run_sql[] = "SELECT config_text, rep FROM run WHERE id = CAST(?1 AS INTEGER)";

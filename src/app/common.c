@@ -15,7 +15,16 @@
 
 /* Keys of long options without a letter. */
 enum {
-    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME, KEY_ONLY,
+    KEY_JSON = 0x100,
+    KEY_LEVEL,
+    KEY_BRIEF,
+    KEY_COMPARE,
+    KEY_FORCE,
+    KEY_DIR,
+    KEY_FORMAT,
+    KEY_ALLOW,
+    KEY_NAME,
+    KEY_ONLY,
     KEY_OWN
 };
 
@@ -26,11 +35,13 @@ static const struct argp_option option_table[] = {
      "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; "
      "several values, as in n=16,32, are a sweep; may be repeated", 1},
     {"name", KEY_NAME, "TEXT", 0,
-     "what these runs are called in tables and figures (default: the machine with what was changed of it)", 1},
+     "what these runs are called in tables and figures (default: the machine with what was changed "
+     "of it)", 1},
     {"only", KEY_ONLY, "CONDITION", 0,
      "only the points that satisfy it, e.g. \"n >= 64 and level == link\"", 1},
     {"allow-programs", KEY_ALLOW, NULL, 0,
-     "run also programs that the scenario names outside its own folder: they run with all your rights", 1},
+     "run also programs that the scenario names outside its own folder: they run with all your "
+     "rights", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db; for paper: paper.db)", 2},
     {"force", KEY_FORCE, NULL, 0, "repeat runs that are already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
@@ -105,7 +116,8 @@ static error_t set_jobs(struct common *c, const char *arg, struct argp_state *st
 }
 
 /* A name must say something, of a run as of a file. */
-static error_t set_name(const char **place, const char *arg, const char *format, struct argp_state *state)
+static error_t set_name(const char **place, const char *arg, const char *format,
+                        struct argp_state *state)
 {
     *place = arg;
     return arg[0] ? 0 : refuse(state, format, arg);
@@ -170,7 +182,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END: /* all words have been seen */
         return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
     case KEY_OWN:
-        /* A verb has taken out its own options by their whole names: this was the beginning of one. */
+        /* A verb has taken out its own options by their whole names: this was the beginning of
+         * one. */
         /* As if it were unknown: to guess here and not there would be worse. */
         return refuse(state, "write the option in full%s", "");
     default:
@@ -273,7 +286,8 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
         if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
     /* Behind them those of the verb alone; argv[0] is "mimdsim VERB". */
     for (size_t i = 0; i < sizeof own_table / sizeof *own_table; i++)
-        if (strcmp(argv[0] + strcspn(argv[0], " ") + 1, own_table[i].verb) == 0) option[n++] = own_table[i].option;
+        if (strcmp(argv[0] + strcspn(argv[0], " ") + 1, own_table[i].verb) == 0)
+            option[n++] = own_table[i].option;
     struct parse p = {c, least, most, {0}};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
     bool document = common_wants_json(argc, argv);

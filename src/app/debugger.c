@@ -33,7 +33,8 @@ void debugger_run(int argc, char **argv, int place, struct err *e)
     else self[n] = '\0';
     snprintf(stop, sizeof stop, "tbreak *loader_debug_stop if (int)$rdi == %ld", rank);
 
-    /* The simulator has a main, too, which it has long entered: only the one of the program is met. */
+    /* The simulator has a main, too, which it has long entered: only the one of the program is
+     * met. */
     const char *const before[] = {
         "gdb",    "-q",
         "-ex",    "set confirm off",

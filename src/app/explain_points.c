@@ -249,10 +249,9 @@ static bool load(struct explain_subject *s, struct explain_bench *b)
     struct loading l = {s, b, NULL};
     return ok &&
            store_query(b->store,
-                       "SELECT p.id, p.key, j.claim, j.variant, j.value, j.margin, j.holds"
-                       " FROM explain_point p"
-                       " LEFT JOIN explain_judged j ON j.point_id = p.id WHERE p.subject = ?1"
-                       " ORDER BY p.id",
+                       "SELECT p.id, p.key, j.claim, j.variant, j.value, j.margin, j.holds FROM "
+                       "explain_point p LEFT JOIN explain_judged j ON j.point_id = p.id WHERE "
+                       "p.subject = ?1 ORDER BY p.id",
                        1, subject, NULL, load_row, &l, b->e) &&
            store_query(b->store, "SELECT max(id) FROM explain_point", 0, NULL, NULL, take_id,
                        &b->last_id, b->e);

@@ -1,7 +1,9 @@
-/* explain_points.h - points of the space of unstated parameters: run, judged by the claims' own queries, kept.
+/* explain_points.h - points of the space of unstated parameters: run, judged by the claims' own
+ * queries, kept.
  *
- * A point of a subject (one claim, or several together) is judged by the runs that the claims' "-- explore:" lines
- * name, with the point's settings, in a passing database. Points are stored as they are made and never made twice. */
+ * A point of a subject (one claim, or several together) is judged by the runs that the claims' "--
+ * explore:" lines name, with the point's settings, in a passing database. Points are stored as they
+ * are made and never made twice. */
 #ifndef APP_EXPLAIN_POINTS_H
 #define APP_EXPLAIN_POINTS_H
 
@@ -59,25 +61,27 @@ struct explain_bench {
     int made;        /* points that were run by this program */
 };
 
-/* explain_subject_make: a subject of these rules: their runs read from the scenarios, points that are stored already
- * taken from the database, those of another identity removed from it. Returns false with ERR_DATA (no "-- explore:"
- * line; runs of several machines) or as plan_read. */
+/* explain_subject_make: a subject of these rules: their runs read from the scenarios, points that
+ * are stored already taken from the database, those of another identity removed from it. Returns
+ * false with ERR_DATA (no "-- explore:" line; runs of several machines) or as plan_read. */
 bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, const char *name,
                           const struct claim_rule *const *rule, int nrule);
 
-/* explain_machine: the machine of the first scenario that a rule explores. Returns false as plan_read. */
+/* explain_machine: the machine of the first scenario that a rule explores. Returns false as
+ * plan_read. */
 bool explain_machine(struct explain_bench *b, const struct claim_rule *rule, char machine[64]);
 
 /* explain_known: the point of a request, NULL when it has not been made. */
-const struct explain_point *explain_known(const struct explain_subject *s, enum operators operators, const double *u);
+const struct explain_point *explain_known(const struct explain_subject *s, enum operators operators,
+                                          const double *u);
 
-/* explain_make: make all n points, on worker processes; the outcome does not depend on how many. Points made before a
- * failure stay. */
+/* explain_make: make all n points, on worker processes; the outcome does not depend on how many.
+ * Points made before a failure stay. */
 bool explain_make(struct explain_bench *b, const struct explain_request *request, int n);
 
-/* explain_confirm: judge the subject's rules at a point by the runs of the study's own scenarios; *nrun of them were
- * made. The verdicts are in b->arena. */
-bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators, const double *u,
-                     struct explain_point *out, int *nrun);
+/* explain_confirm: judge the subject's rules at a point by the runs of the study's own scenarios;
+ * *nrun of them were made. The verdicts are in b->arena. */
+bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators,
+                     const double *u, struct explain_point *out, int *nrun);
 
 #endif

@@ -16,7 +16,8 @@
 /* --- choices ---------------------------------------------------------------------------------- */
 
 static const char *const baselines[EXPLAIN_BASELINES] = {
-    "fastest serial", "rnea+aba", "rnea+crba", "rnea+cfa-paper", "rnea+cfa-direct", "parallel code on one processor"};
+    "fastest serial", "rnea+aba", "rnea+crba", "rnea+cfa-paper", "rnea+cfa-direct",
+    "parallel code on one processor"};
 
 const char *explain_baseline(int i) { return baselines[i]; }
 
@@ -29,13 +30,15 @@ const char *explain_baseline_of(const struct claim_rule *rule)
     return NULL;
 }
 
-/* Where the word for the operators stands at the end of a variant's name; its end when it names none. */
+/* Where the word for the operators stands at the end of a variant's name; its end when it names
+ * none. */
 static size_t operators_at(const char *variant)
 {
     static const char *const word[] = {"structured", "dense"};
     size_t n = strlen(variant);
     for (int i = 0; i < 2; i++)
-        if (n >= strlen(word[i]) && strcmp(variant + n - strlen(word[i]), word[i]) == 0) return n - strlen(word[i]);
+        if (n >= strlen(word[i]) && strcmp(variant + n - strlen(word[i]), word[i]) == 0)
+            return n - strlen(word[i]);
     return n;
 }
 
@@ -45,7 +48,8 @@ bool explain_own_operators(const struct claim_rule *rule, enum operators operato
     return *word == '\0' || (strcmp(word, "dense") == 0) == (operators == OPERATORS_DENSE);
 }
 
-void explain_variant(const struct claim_rule *rule, const char *baseline, enum operators operators, struct text *out)
+void explain_variant(const struct claim_rule *rule, const char *baseline, enum operators operators,
+                     struct text *out)
 {
     const char *own = explain_baseline_of(rule);
     size_t end = operators_at(rule->designated), begin = own && baseline ? strlen(own) : 0;
@@ -56,10 +60,12 @@ void explain_variant(const struct claim_rule *rule, const char *baseline, enum o
 
 /* --- grades ----------------------------------------------------------------------------------- */
 
-static const struct explain_verdict *verdict_of(const struct explain_point *p, int rule, const char *variant)
+static const struct explain_verdict *verdict_of(const struct explain_point *p, int rule,
+                                                const char *variant)
 {
     for (int i = 0; i < p->nverdict; i++)
-        if (p->verdict[i].rule == rule && strcmp(p->verdict[i].variant, variant) == 0) return &p->verdict[i];
+        if (p->verdict[i].rule == rule && strcmp(p->verdict[i].variant, variant) == 0)
+            return &p->verdict[i];
     return NULL;
 }
 
@@ -67,7 +73,8 @@ static const struct explain_verdict *verdict_of(const struct explain_point *p, i
 static struct explain_grade grade_with(const struct explain_goal *g, const struct explain_point *p,
                                        const char *baseline)
 {
-    struct explain_grade w = {.holds = true, .margin = INFINITY, .value = NAN, .baseline = baseline};
+    struct explain_grade w = {
+        .holds = true, .margin = INFINITY, .value = NAN, .baseline = baseline};
     for (int i = 0; i < g->subject->nrule; i++) {
         struct text name = {0};
         explain_variant(g->subject->rule[i], baseline, g->operators, &name);
@@ -75,7 +82,8 @@ static struct explain_grade grade_with(const struct explain_goal *g, const struc
         text_free(&name);
         w.holds = w.holds && v && v->told && v->holds; /* all claims, and all of them told */
         double margin = v ? v->margin : NAN; /* a variant that the claim does not have */
-        if (!(margin >= w.margin) && !isnan(w.margin)) w.margin = margin, w.value = v ? v->value : NAN, w.rule = i;
+        if (!(margin >= w.margin) && !isnan(w.margin))
+            w.margin = margin, w.value = v ? v->value : NAN, w.rule = i;
     }
     return w;
 }
@@ -102,7 +110,8 @@ bool explain_better(const struct explain_grade *a, const struct explain_grade *b
     return a->margin > b->margin;
 }
 
-struct explain_grade explain_grade_point(const struct explain_goal *g, const struct explain_point *p, const double *u)
+struct explain_grade explain_grade_point(const struct explain_goal *g,
+                                         const struct explain_point *p, const double *u)
 {
     double distance = explain_space_distance(&g->subject->space, u);
     struct explain_grade best = grade_with(g, p, NULL);
@@ -175,7 +184,8 @@ static void weigh(struct explain_search *s, int i, double end, const struct expl
     if (change > s->gain[i]) s->gain[i] = change, s->end[i] = end; /* the better of the two ends */
 }
 
-/* From where the claim fails on axis i alone to where it holds: where it begins to, by bisection. */
+/* From where the claim fails on axis i alone to where it holds: where it begins to, by
+ * bisection. */
 static bool scan_boundary(struct round *r, int i, double fails, double holds)
 {
     enum { HALVINGS = 7 }; /* to 1/128 of the axis */
@@ -191,8 +201,8 @@ static bool scan_boundary(struct round *r, int i, double fails, double holds)
     return true;
 }
 
-/* A claim with two bounds may hold between nothing and an end at which it fails: small changes are doubled while they
- * bring it nearer, then the best margin is sought between its neighbours. */
+/* A claim with two bounds may hold between nothing and an end at which it fails: small changes are
+ * doubled while they bring it nearer, then the best margin is sought between its neighbours. */
 static bool scan_between(struct round *r, int i, double end, double margin_at_end)
 {
     enum { DOUBLINGS = 5, HALVES = 6 }; /* from 1/32 of the axis */
@@ -201,7 +211,8 @@ static bool scan_between(struct round *r, int i, double end, double margin_at_en
     for (int k = 0; k < DOUBLINGS + HALVES; k++) {
         double u[EXPLAIN_MOST_AXES] = {0}, x;
         struct explain_grade grade;
-        /* Outwards first; then the middles of both sides in turn. A margin that rises to the end has no peak. */
+        /* Outwards first; then the middles of both sides in turn. A margin that rises to the end
+         * has no peak. */
         if (!rises && at == 0) return true;
         if (rises && k >= DOUBLINGS && margin_at_end > best) return true;
         rises = rises && k < DOUBLINGS;
@@ -230,7 +241,9 @@ static bool scan_axis(struct round *r, int i, double end)
     u[i] = end;
     if (!look(r, u, &grade)) return false;
     weigh(s, i, end, &grade);
-    if (!grade.holds) return !between || s->goal.subject->space.axis[i].dear || scan_between(r, i, end, grade.margin);
+    if (!grade.holds)
+        return !between || s->goal.subject->space.axis[i].dear ||
+               scan_between(r, i, end, grade.margin);
     consider(&s->single, u, &grade);
     return scan_boundary(r, i, 0, end);
 }
@@ -253,15 +266,16 @@ static bool scan(struct round *r)
 
 /* --- simplexes -------------------------------------------------------------------------------- */
 
-/* Where it holds the distance counts, elsewhere how far it is from holding: any point that holds is better than all
- * that do not. */
+/* Where it holds the distance counts, elsewhere how far it is from holding: any point that holds is
+ * better than all that do not. */
 static double cost_of(const struct explain_grade *g)
 {
     const double fails = 50, short_by = isnan(g->margin) ? 20 : fmin(20, fmax(-g->margin, 1e-6));
     return g->holds ? g->distance : fails + short_by + 0.002 * g->distance;
 }
 
-/* The axes that simplexes move along: of those that change anything the most effective, the dear ones when asked. */
+/* The axes that simplexes move along: of those that change anything the most effective, the dear
+ * ones when asked. */
 static int effective_axes(const struct explain_search *s, bool dear, int axis[EXPLAIN_MOST_AXES])
 {
     enum { MOST = 6 }; /* a simplex in more dimensions needs too many points */
@@ -302,8 +316,8 @@ static double simplex_cost(const gsl_vector *x, void *context)
     return 0;
 }
 
-/* Given starts, then half-way to the better ends, the nominal point, anywhere in the box; at last the answer so far,
- * with smaller steps. */
+/* Given starts, then half-way to the better ends, the nominal point, anywhere in the box; at last
+ * the answer so far, with smaller steps. */
 static struct descent begin_at(struct round *r, int start)
 {
     const struct explain_search *s = r->search;
@@ -344,7 +358,8 @@ static bool simplex(struct round *r, int start)
     const struct explain_space *space = &r->search->goal.subject->space;
     if (d.n == 0) return true; /* no axis changes anything */
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, (size_t)d.n);
+    gsl_multimin_fminimizer *m =
+        gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, (size_t)d.n);
     gsl_vector *x = gsl_vector_alloc((size_t)d.n), *step = gsl_vector_alloc((size_t)d.n);
     if (!m || !x || !step) check_memory(0);
     for (int i = 0; i < d.n; i++) {
@@ -352,7 +367,8 @@ static bool simplex(struct round *r, int start)
         double u = d.u[d.axis[i]];
         gsl_vector_set(x, (size_t)i, u);
         /* A step that leads out of the box would be no step. */
-        gsl_vector_set(step, (size_t)i, (u <= 0.5 * (a->least + a->most) ? d.step : -d.step) * a->most);
+        gsl_vector_set(step, (size_t)i,
+                       (u <= 0.5 * (a->least + a->most) ? d.step : -d.step) * a->most);
     }
     bool ended = iterate(&d, m, x, step);
     gsl_multimin_fminimizer_free(m);
@@ -381,7 +397,8 @@ static bool beside(struct round *r)
 
 /* --- taking back ------------------------------------------------------------------------------ */
 
-/* The change of axis i spread over the others, where that holds, too: as long a way with fewer changes. */
+/* The change of axis i spread over the others, where that holds, too: as long a way with fewer
+ * changes. */
 static bool hand_over(struct round *r, double *u, int i, bool *changed)
 {
     struct explain_grade grade;
@@ -467,7 +484,8 @@ static bool advance(struct round *r)
     if (s->polished == 0 || s->goal.starts == 0) return s->polished;
     /* Around what is left there may be a shorter way. */
     if (s->begun == 2) memcpy(s->from[1], s->best.u, sizeof s->from[1]), s->begun = 3;
-    if (!s->ended[s->goal.starts] && !(s->ended[s->goal.starts] = simplex(r, s->goal.starts))) return false;
+    if (!s->ended[s->goal.starts] && !(s->ended[s->goal.starts] = simplex(r, s->goal.starts)))
+        return false;
     if (s->begun == 3) memcpy(s->from[2], s->best.u, sizeof s->from[2]), s->begun = 4;
     return polish(r, s->from[2]);
 }
@@ -481,7 +499,10 @@ bool explain_search_all(struct explain_bench *b, struct explain_search *search, 
     for (int nrequest = 1; ok && nrequest > 0;) {
         nrequest = 0; /* each round begins anew: what is known answers at once */
         for (int i = 0; i < n; i++) {
-            struct round r = {.search = &search[i], .request = request, .nrequest = &nrequest, .most = MOST_REQUESTS};
+            struct round r = {.search = &search[i],
+                              .request = request,
+                              .nrequest = &nrequest,
+                              .most = MOST_REQUESTS};
             if (!search[i].done) search[i].done = advance(&r);
         }
         ok = explain_make(b, request, nrequest);

@@ -19,13 +19,15 @@
  * machines were shared with others. */
 static const struct explain_axis table[] = {
     /* computing: the paper gives no rate of its code */
-    {.words = "the code runs at", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"node.flop_rate"}, .most = 2.3026},
+    {.words = "the code runs at", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"node.flop_rate"},
+     .most = 2.3026},
     {.words = "the serial code runs at",
      .map = EXPLAIN_RELATIVE,
      .nkey = 1,
      .key = {"node.serial_rate"},
      .most = 2.3026},
-    {.words = "calling a small operator takes", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"node.call"}, .most = 2.3026},
+    {.words = "calling a small operator takes", .map = EXPLAIN_FACTOR, .nkey = 1,
+     .key = {"node.call"}, .most = 2.3026},
     {.words = "the program copies at",
      .map = EXPLAIN_FACTOR,
      .nkey = 1,
@@ -50,7 +52,8 @@ static const struct explain_axis table[] = {
      .nkey = 1,
      .key = {"network.end_latency"},
      .most = 2.3026},
-    {.words = "links carry", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"network.link.bandwidth"}, .most = 2.3026},
+    {.words = "links carry", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"network.link.bandwidth"},
+     .most = 2.3026},
     /* other users of the machine */
     {.words = "others' traffic takes",
      .after = " of every link",
@@ -143,8 +146,7 @@ bool explain_space_make(struct explain_space *s, const char *name, struct arena 
 /* --- numbers ---------------------------------------------------------------------------------- */
 
 /* x > 0 with three significant digits: the double that its decimal text reads back to, as 10^k is
- * exact up to k = 22.
- */
+ * exact up to k = 22. */
 static double three_digits(double x)
 {
     static const double ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,

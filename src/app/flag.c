@@ -77,7 +77,8 @@ bool take_threads(int *argc, char **argv, int *threads, struct err *e)
     if (text == NULL || strcmp(text, "auto") == 0) return true;
     const long n = strtol(text, &end, 10);
     if (end == text || *end != '\0' || n < 1 || n > 1024)
-        return err_set(e, ERR_USAGE, "--threads: '%.40s' is neither 'auto' nor a number from 1 to 1024", text);
+        return err_set(e, ERR_USAGE,
+                       "--threads: '%.40s' is neither 'auto' nor a number from 1 to 1024", text);
     *threads = (int)n;
     return true;
 }

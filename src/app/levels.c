@@ -53,10 +53,9 @@ static bool find_known(struct store *s, const char *family, struct known *k, str
 {
     k->n = 0;
     return store_select(s,
-                        "SELECT method, max(relative_error), at FROM ladder"
-                        " WHERE ladder = 'network' AND quantity ="
-                        " 'makespan' AND family = ?1 AND relative_error IS NOT NULL GROUP BY method"
-                        " ORDER BY method",
+                        "SELECT method, max(relative_error), at FROM ladder WHERE ladder = "
+                        "'network' AND quantity = 'makespan' AND family = ?1 AND relative_error IS "
+                        "NOT NULL GROUP BY method ORDER BY method",
                         1, &family, add_known, k, e);
 }
 

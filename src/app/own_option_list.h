@@ -1,52 +1,59 @@
-/* own_option_list.h - the options that a single verb has: one line each, for its --help and for misspelt ones.
+/* own_option_list.h - the options that a single verb has: one line each, for its --help and for
+ * misspelt ones.
  *
- * They are taken out of the arguments before the common ones are read (flag.h); a test holds this list against the
- * words that the verbs take. */
+ * They are taken out of the arguments before the common ones are read (flag.h); a test holds this
+ * list against the words that the verbs take. */
 #ifndef APP_OWN_OPTION_LIST_H
 #define APP_OWN_OPTION_LIST_H
 
 /* X(verb, name, value, text): value NULL: the option takes none. */
-#define OWN_OPTION_LIST(X)                                                                                    \
-    X("run", "shard", "K/N", "only the runs of shard K of N")                                                 \
-    X("run", "point", "ID", "only this run of the plan (mimdsim plan lists them)")                            \
-    X("run", "limit", "SECONDS", "processor time that a run of your own program may take (default 600)")      \
-    X("run", "keep-all", NULL, "also compute what the scene does not need")                                   \
-    X("run", "campaign", "WAY", "mpi: the processes that mpirun started share the plan")                      \
-    X("run", "spread", "WAY", "mpi: the processes that mpirun started share the ranks of each run")           \
-    X("run", "threads", "N|auto", "host threads for each run (default auto)")                                 \
-    X("run", "uncertainty", "N", "draw the machine's uncertain parameters N times: bands and shares")         \
-    X("run", "bands-only", NULL, "with --uncertainty: without the shares of the variance")                    \
-    X("run", "columns", "NAME,...", "columns of the table, or all")                                           \
-    X("run", "csv", NULL, "print all columns with commas, for programs")                                      \
-    X("plan", "shards", "N", "also the shard that each run belongs to")                                       \
-    X("plan", "format", "FORMAT", "lines (default) or json")                                                  \
-    X("paper", "paper-only", NULL, "without the five scenes of accuracy, stability and omissions")            \
-    X("claims", "explain", NULL, "what would have to change for the claims that fail to hold")                \
-    X("claims", "what-if", NULL, "count runs on changed machines, too")                                       \
-    X("plot", "x", "KEY", "column or setting from left to right")                                             \
-    X("plot", "y", "KEY", "column from bottom to top")                                                        \
-    X("plot", "z", "KEY", "of a heat map: the column that the colours show over --x and --y")                 \
-    X("plot", "by", "KEY,...", "columns that tell curves apart (default: as many as it takes)")               \
-    X("plot", "where", "CONDITION", "only rows with KEY=VALUE (or !=, <, <=, >, >=, ~); may be repeated")     \
-    X("plot", "kind", "KIND", "lines, bars or heat (default: as the columns are)")                            \
-    X("plot", "log", "AXES", "logarithmic axes: x, y, xy or none (default: where the range asks for it)")     \
-    X("plot", "title", "TEXT", "of the figure")                                                               \
-    X("plot", "as", "NAME", "name of the files (default: what is over what)")                                 \
-    X("plot", "columns", NULL, "list what --x, --y, --by and --where can name in this database")              \
-    X("compare", "on", "SCENARIO", "what machines run to be compared (default speedup-t3e)")                  \
-    X("accuracy", "within", "ERROR", "recommend the cheapest way within this error, such as 2%")              \
-    X("netcheck", "within", "PERCENT", "require every error to be within this, such as 2%")                   \
-    X("netcheck", "stated", NULL, "print the stated accuracies and run nothing")                              \
-    X("timeline", "from", "TIME", "begin there, such as 1.2 ms")                                              \
-    X("timeline", "to", "TIME", "end there")                                                                  \
-    X("timeline", "ranks", "A..B", "these ranks alone")                                                       \
-    X("explain", "measure", NULL, "also run with each omission undone, and tell what it saves")               \
-    X("why", "brief", NULL, "the path and the contributions alone, from one run")                             \
-    X("check", "again", "K", "of a database: make K of its runs (or all) again and compare every number")     \
-    X("check", "seed", "S", "which runs --again takes (default 1)")                                           \
-    X("lab", "variant", "STUDENT", "choose the numbers of the lesson by this name")                           \
-    X("scenarios", "keys", NULL, "all keys of scenarios, machine files and --set")                            \
-    X("query", "upgrade", NULL, "make the database one of this version")                                      \
+#define OWN_OPTION_LIST(X)                                                                         \
+    X("run", "shard", "K/N", "only the runs of shard K of N")                                      \
+    X("run", "point", "ID", "only this run of the plan (mimdsim plan lists them)")                 \
+    X("run", "limit", "SECONDS",                                                                   \
+      "processor time that a run of your own program may take (default 600)")                      \
+    X("run", "keep-all", NULL, "also compute what the scene does not need")                        \
+    X("run", "campaign", "WAY", "mpi: the processes that mpirun started share the plan")           \
+    X("run", "spread", "WAY",                                                                      \
+      "mpi: the processes that mpirun started share the ranks of each run")                        \
+    X("run", "threads", "N|auto", "host threads for each run (default auto)")                      \
+    X("run", "uncertainty", "N",                                                                   \
+      "draw the machine's uncertain parameters N times: bands and shares")                         \
+    X("run", "bands-only", NULL, "with --uncertainty: without the shares of the variance")         \
+    X("run", "columns", "NAME,...", "columns of the table, or all")                                \
+    X("run", "csv", NULL, "print all columns with commas, for programs")                           \
+    X("plan", "shards", "N", "also the shard that each run belongs to")                            \
+    X("plan", "format", "FORMAT", "lines (default) or json")                                       \
+    X("paper", "paper-only", NULL, "without the five scenes of accuracy, stability and omissions") \
+    X("claims", "explain", NULL, "what would have to change for the claims that fail to hold")     \
+    X("claims", "what-if", NULL, "count runs on changed machines, too")                            \
+    X("plot", "x", "KEY", "column or setting from left to right")                                  \
+    X("plot", "y", "KEY", "column from bottom to top")                                             \
+    X("plot", "z", "KEY", "of a heat map: the column that the colours show over --x and --y")      \
+    X("plot", "by", "KEY,...", "columns that tell curves apart (default: as many as it takes)")    \
+    X("plot", "where", "CONDITION",                                                                \
+      "only rows with KEY=VALUE (or !=, <, <=, >, >=, ~); may be repeated")                        \
+    X("plot", "kind", "KIND", "lines, bars or heat (default: as the columns are)")                 \
+    X("plot", "log", "AXES",                                                                       \
+      "logarithmic axes: x, y, xy or none (default: where the range asks for it)")                 \
+    X("plot", "title", "TEXT", "of the figure")                                                    \
+    X("plot", "as", "NAME", "name of the files (default: what is over what)")                      \
+    X("plot", "columns", NULL, "list what --x, --y, --by and --where can name in this database")   \
+    X("compare", "on", "SCENARIO", "what machines run to be compared (default speedup-t3e)")       \
+    X("accuracy", "within", "ERROR", "recommend the cheapest way within this error, such as 2%")   \
+    X("netcheck", "within", "PERCENT", "require every error to be within this, such as 2%")        \
+    X("netcheck", "stated", NULL, "print the stated accuracies and run nothing")                   \
+    X("timeline", "from", "TIME", "begin there, such as 1.2 ms")                                   \
+    X("timeline", "to", "TIME", "end there")                                                       \
+    X("timeline", "ranks", "A..B", "these ranks alone")                                            \
+    X("explain", "measure", NULL, "also run with each omission undone, and tell what it saves")    \
+    X("why", "brief", NULL, "the path and the contributions alone, from one run")                  \
+    X("check", "again", "K",                                                                       \
+      "of a database: make K of its runs (or all) again and compare every number")                 \
+    X("check", "seed", "S", "which runs --again takes (default 1)")                                \
+    X("lab", "variant", "STUDENT", "choose the numbers of the lesson by this name")                \
+    X("scenarios", "keys", NULL, "all keys of scenarios, machine files and --set")                 \
+    X("query", "upgrade", NULL, "make the database one of this version")                           \
     X("query", "schema", NULL, "print every table, view and column")
 
 #endif

@@ -73,7 +73,8 @@ bool plot_options_take(struct plot_request *r, int *argc, char **argv, bool *giv
                 {"--title", &r->title}, {"--as", &r->as}};
     for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
         *text[i].place = take_value(argc, argv, text[i].option);
-        if (*text[i].place != NULL && **text[i].place == '\0' && strcmp(text[i].option, "--by") != 0)
+        if (*text[i].place != NULL && **text[i].place == '\0' &&
+            strcmp(text[i].option, "--by") != 0)
             return err_set(e, ERR_USAGE, "%s: a value is missing", text[i].option);
     }
     *given = r->x != NULL || r->y != NULL || r->z != NULL;
@@ -87,7 +88,8 @@ void plot_options_name(struct plot_request *r, const char *query_file, struct ar
     struct text t = {0};
     if (r->as != NULL) text_add(&t, "%s", r->as);
     else if (query_file != NULL) {
-        const char *slash = strrchr(query_file, '/'), *stem = slash != NULL ? slash + 1 : query_file;
+        const char *slash = strrchr(query_file, '/'),
+                   *stem = slash != NULL ? slash + 1 : query_file;
         text_add(&t, "%.*s", (int)(strlen(stem) - strlen(".sql")), stem);
     } else {
         text_add(&t, "%s-over-%s", r->z != NULL ? r->z : r->y != NULL ? r->y : "y",

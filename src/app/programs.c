@@ -94,8 +94,8 @@ static bool add_file(struct text *all, const char *path, struct err *e)
     return true;
 }
 
-/* The files of a rule of make, "x.o: x.c a.h \\\n b.h", in its order; spaces in names are escaped.
- */
+/* The files of a rule of make, "x.o: x.c a.h \\\n b.h", in its order; spaces in names are
+ * escaped. */
 static bool add_files(struct text *all, const char *rule, struct err *e)
 {
     const char *s = strchr(rule, ':');
@@ -149,7 +149,9 @@ static const char *cache_folder(struct arena *a, struct err *e)
     /* The XDG base directory specification: a relative path there is ignored. */
     const bool given = cache != NULL && cache[0] == '/', at_home = home != NULL && home[0] == '/';
     if (!given && !at_home) {
-        err_set(e, ERR_CONFIG, "no folder to keep compiled programs in: neither XDG_CACHE_HOME nor HOME is set to one");
+        err_set(e, ERR_CONFIG,
+                "no folder to keep compiled programs in: neither XDG_CACHE_HOME nor HOME is set to "
+                "one");
         return NULL;
     }
     text_add(&t, "%s%s/mimdsim/programs", given ? cache : home, given ? "" : "/.cache");

@@ -25,7 +25,8 @@ static const struct {
     double scale;
     enum dimension of;
 } units[] = {{"s", 1, TIME},      {"us", 1e-6, TIME},   {"ns", 1e-9, TIME},       {"B", 1, SIZE},
-             {"MB/s", 1e6, RATE}, {"GB/s", 1e9, RATE},  {"TB/s", 1e12, RATE},     {"Mflop/s", 1e6, FLOPS},
+             {"MB/s", 1e6, RATE}, {"GB/s", 1e9, RATE},  {"TB/s", 1e12, RATE},     {"Mflop/s",
+              1e6, FLOPS},
              {"Gflop/s", 1e9, FLOPS}};
 
 /* Time, but for the quantities named here. */

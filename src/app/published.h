@@ -1,4 +1,5 @@
-/* published.h - machines/published.csv: measured and advertised figures of real machines, each with its source. */
+/* published.h - machines/published.csv: measured and advertised figures of real machines, each with
+ * its source. */
 #ifndef APP_PUBLISHED_H
 #define APP_PUBLISHED_H
 
@@ -30,10 +31,13 @@ struct published {
     enum published_use use;
     double add;              /* SI, what the simulator leaves out, added to its answer */
     int nset;
-    const char **set; /* (nset) "machine.key=value": the machine that was measured, where it is not the file's */
+    const char **set; /* (nset) "machine.key=value": the machine that was measured, where it is not
+                         the file's */
     const char *source;
-    const char *cause; /* why the simulator misses it, or cannot be held against it; "": nothing is known */
-    double missed; /* relative error that the cause explains, which it begins with ("+40 %: ..."); NaN: it names none */
+    const char *
+        cause; /* why the simulator misses it, or cannot be held against it; "": nothing is known */
+    double missed; /* relative error that the cause explains, which it begins with ("+40 %: ...");
+                      NaN: it names none */
 };
 
 /* published_use_name: "yes", "no", "other". */
@@ -41,6 +45,7 @@ const char *published_use_name(enum published_use use);
 
 /* published_read: all rows of `path` into (*n) records in `a`.
  * Returns false with ERR_NO_INPUT, ERR_IO, or ERR_DATA with file and line. */
-bool published_read(const char *path, struct arena *a, struct published **row, int *n, struct err *e);
+bool published_read(const char *path, struct arena *a, struct published **row, int *n,
+                    struct err *e);
 
 #endif

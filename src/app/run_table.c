@@ -235,7 +235,8 @@ static int terminal_width(FILE *out)
     struct winsize size;
     const char *columns = getenv("COLUMNS");
     /* a file or a pipe takes lines of any length */
-    const int fd = out == stdout ? STDOUT_FILENO : fileno(out); /* stdout may be a filter: escape.h */
+    /* stdout may be a filter: escape.h */
+    const int fd = out == stdout ? STDOUT_FILENO : fileno(out);
     if (!isatty(fd)) return 0;
     /* shells do not export it: who does means it */
     if (columns != NULL && atoi(columns) > 0) return atoi(columns);

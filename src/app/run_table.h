@@ -18,7 +18,8 @@ struct run_table_look {
 /* run_table_take: "--columns LIST" and "--csv" out of the arguments. False with ERR_USAGE. */
 bool run_table_take(int *argc, char **argv, struct run_table_look *l, struct err *e);
 
-/* run_table_show: the rows of any query with one parameter in the same look, but for the choice of columns. */
+/* run_table_show: the rows of any query with one parameter in the same look, but for the choice of
+ * columns. */
 bool run_table_show(struct store *s, const char *sql, const char *param,
                     const struct run_table_look *l, FILE *out, struct err *e);
 

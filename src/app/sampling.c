@@ -93,7 +93,8 @@ static bool find_scenes(struct sampler *p)
                                     "there is no scenario sample-*.yaml to sample with");
 }
 
-/* Every parameter has a random stream of its own, so a new one does not change the others' draws. */
+/* Every parameter has a random stream of its own, so a new one does not change the others'
+ * draws. */
 static double draw(const struct drawn *u, int sample)
 {
     uint64_t name = DIGEST_START;

@@ -1,4 +1,5 @@
-/* shard.h - a part of a plan for one of several hosts: every run belongs to one shard, by its identity. */
+/* shard.h - a part of a plan for one of several hosts: every run belongs to one shard, by its
+ * identity. */
 #ifndef APP_SHARD_H
 #define APP_SHARD_H
 
@@ -14,8 +15,8 @@ struct shard {
 /* shard_parse: "3/8"; NULL is everything. Returns false with ERR_USAGE. */
 bool shard_parse(const char *text, struct shard *out, struct err *e);
 
-/* shard_of: the shard (1 .. of) that the run belongs to. It depends on the run's identity and on `of` alone, so every
- * host finds the same, whatever else is in its plan. */
+/* shard_of: the shard (1 .. of) that the run belongs to. It depends on the run's identity and on
+ * `of` alone, so every host finds the same, whatever else is in its plan. */
 int shard_of(const struct run_spec *run, int of);
 
 enum { RUN_NAME = 96 }; /* room for the name of a run */

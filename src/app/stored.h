@@ -1,7 +1,7 @@
 /* stored.h - what stored answers were made for, so that they are found again and not made twice.
  *
- * An answer that takes many runs is kept in the database with a digest of everything that it depends
- * on, in table meta. The same digest means that the answer still holds. */
+ * An answer that takes many runs is kept in the database with a digest of everything that it
+ * depends on, in table meta. The same digest means that the answer still holds. */
 #ifndef APP_STORED_H
 #define APP_STORED_H
 
@@ -10,8 +10,8 @@
 #include "spec/run_spec.h"
 #include "store/store.h"
 
-/* stored_add_runs, stored_add_claim: what an answer depends on onto *all: the identities of n runs; a
- * claim with its query. */
+/* stored_add_runs, stored_add_claim: what an answer depends on onto *all: the identities of n runs;
+ * a claim with its query. */
 void stored_add_runs(struct text *all, const struct run_spec *spec, int n);
 void stored_add_claim(struct text *all, const struct claim_rule *rule);
 

@@ -401,14 +401,12 @@ bool uncertainty_print(struct store *s, const struct plan *p, FILE *out, struct 
           out);
     const bool ok = report_query(
         s,
-        "SELECT substr(key, 9) AS parameter, class, iif(printed, 'file', 'class') AS range_from,"
-        " printf('%.1f %%', 100 * avg(first)) AS alone,"
-        " printf('%.1f', 100 * avg(first_error)) AS \"+-\","
-        " printf('%.1f %%', 100 * avg(total)) AS with_interactions,"
-        " printf('%.1f', 100 * avg(total_error)) AS \"+- \", count(*) AS runs"
-        " FROM uncertainty_share WHERE quantity = 'makespan_ps' AND first IS NOT NULL"
-        " AND run_id IN (SELECT value FROM json_each(?1))"
-        " GROUP BY key, class, printed ORDER BY avg(total) DESC, key",
+        "SELECT substr(key, 9) AS parameter, class, iif(printed, 'file', 'class') AS range_from, "
+        "printf('%.1f %%', 100 * avg(first)) AS alone, printf('%.1f', 100 * avg(first_error)) AS "
+        "\"+-\", printf('%.1f %%', 100 * avg(total)) AS with_interactions, printf('%.1f', 100 * "
+        "avg(total_error)) AS \"+- \", count(*) AS runs FROM uncertainty_share WHERE quantity = "
+        "'makespan_ps' AND first IS NOT NULL AND run_id IN (SELECT value FROM json_each(?1)) GROUP "
+        "BY key, class, printed ORDER BY avg(total) DESC, key",
         1, bound, false, out, e);
     text_free(&ids);
     return ok;

@@ -21,7 +21,8 @@ struct verb {
 /* verb_list: all verbs, ended by a NULL name. */
 extern const struct verb verb_list[];
 
-/* The verbs. Each reads its command line (argv[0] is "mimdsim VERB") and returns the exit status. */
+/* The verbs. Each reads its command line (argv[0] is "mimdsim VERB") and returns the exit
+ * status. */
 #define X(function, word, title) int function(int argc, char **argv);
 VERB_LIST(X)
 #undef X
@@ -51,8 +52,15 @@ struct common {
 };
 
 /* Which of the common options a verb takes. */
-enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEVEL = 16, TAKES_COMPARE = 32,
-       TAKES_FORMAT = 64 };
+enum {
+    TAKES_PLAN = 1,
+    TAKES_STORE = 2,
+    TAKES_DIR = 4,
+    TAKES_JOBS = 8,
+    TAKES_LEVEL = 16,
+    TAKES_COMPARE = 32,
+    TAKES_FORMAT = 64
+};
 
 /* common_parse: read the command line of a verb.
  *
@@ -61,19 +69,22 @@ enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEV
  *   least,most  in  how many arguments; outside: message and exit status 64
  *
  * Ends the process on a wrong option (64; with --json, with a document) and after --help (0). */
-void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
-                  int most);
+void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args,
+                  const char *doc, int least, int most);
 
 /* common_plan: the plan options among them, and the names of the kernels; borrowed from *c. */
 struct plan_options common_plan(const struct common *c);
 
 /* common_print_pairs: n names with their titles, as lines or as a JSON array of {name, title}. */
-void common_print_pairs(const struct common *c, int n, const char *const *name, const char *const *title);
+void common_print_pairs(const struct common *c, int n, const char *const *name,
+                        const char *const *title);
 
-/* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit status. */
+/* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit
+ * status. */
 int common_fail(const struct common *c, const struct err *e);
 
-/* common_error_json: the object {exit_status, file, kind, line, text} of an error; of none, kind ERR_NONE. */
+/* common_error_json: the object {exit_status, file, kind, line, text} of an error; of none, kind
+ * ERR_NONE. */
 void common_error_json(struct json *j, const char *file, const struct err *e);
 
 /* common_wants_json: whether --json stands among the options. */

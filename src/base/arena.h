@@ -1,7 +1,8 @@
 /* arena.h - all memory of one run, given back at once.
  *
- * Blocks grow from the heap as needed; nothing is freed singly. Scratch is taken after a mark and given back by
- * arena_release. Memory is zeroed. Where the system refuses more, the process ends (check_memory). */
+ * Blocks grow from the heap as needed; nothing is freed singly. Scratch is taken after a mark and
+ * given back by arena_release. Memory is zeroed. Where the system refuses more, the process ends
+ * (check_memory). */
 #ifndef BASE_ARENA_H
 #define BASE_ARENA_H
 
@@ -21,21 +22,24 @@ struct arena *arena_create(void);
 /* arena_destroy: give back every byte; accepts NULL. */
 void arena_destroy(struct arena *a);
 
-/* arena_take: `size` zeroed bytes, aligned to 64; lives until arena_destroy or the release of an earlier mark. */
+/* arena_take: `size` zeroed bytes, aligned to 64; lives until arena_destroy or the release of an
+ * earlier mark. */
 void *arena_take(struct arena *a, size_t size);
 
 /* arena_text: a copy of the string `s` in the arena. */
 char *arena_text(struct arena *a, const char *s);
 
-/* arena_mark: the present position; arena_release gives back everything taken since (marks nest). */
+/* arena_mark: the present position; arena_release gives back everything taken since (marks
+ * nest). */
 struct arena_mark arena_mark(struct arena *a);
 void arena_release(struct arena *a, struct arena_mark m);
 
 /* arena_peak: largest number of bytes ever in use [B]. */
 size_t arena_peak(const struct arena *a);
 
-/* TAKE(a, n, type): an array of n zeroed elements of `type`. Where n is a product it is a size_product: what wraps in
- * an int is small again before this macro sees it. A size that does not fit, or is negative, is refused as memory. */
+/* TAKE(a, n, type): an array of n zeroed elements of `type`. Where n is a product it is a
+ * size_product: what wraps in an int is small again before this macro sees it. A size that does not
+ * fit, or is negative, is refused as memory. */
 #define TAKE(a, n, type) ((type *)arena_take((a), size_product((size_t)(n), sizeof(type))))
 
 #endif

@@ -9,8 +9,10 @@
 static bool take_word(const char **s, char *to)
 {
     char quote = '\0';
+    /* A blank ends a word unless a quote is open. */
     for (; **s != '\0' && (quote != '\0' || strchr(" \t", **s) == NULL); (*s)++) {
         const char c = **s, next = (*s)[1];
+        /* As a shell does: within " only " and \ can be escaped, within ' nothing. */
         const bool escaped = c == '\\' && next != '\0' &&
                              (quote == '\0' || (quote == '"' && strchr("\"\\", next) != NULL));
         if (escaped) *to++ = *++*s;
@@ -22,13 +24,14 @@ static bool take_word(const char **s, char *to)
     return quote == '\0';
 }
 
-int argument_line_split(const char *first, const char *line, char ***argv, struct arena *a, char *why,
-                int size)
+int argument_line_split(const char *first, const char *line, char ***argv, struct arena *a,
+                        char *why, int size)
 {
     const size_t n = strlen(line);
     int argc = 0;
     *argv = TAKE(a, n + 3, char *); /* each word takes a byte of the line at least */
     (*argv)[argc++] = arena_text(a, first);
+    /* What went before a quote without end is dropped: half a command must not run. */
     for (const char *s = line; *(s += strspn(s, " \t")) != '\0';) {
         (*argv)[argc] = TAKE(a, n + 1, char);
         if (take_word(&s, (*argv)[argc++])) continue;
@@ -40,6 +43,7 @@ int argument_line_split(const char *first, const char *line, char ***argv, struc
 
 void argument_line_add(struct text *line, const char *word)
 {
+    /* Most words need no quotes, and without them the line stays readable. */
     const bool plain = word[0] != '\0' && strpbrk(word, " \t\n'\"\\[]") == NULL;
     if (line->length > 0) text_add(line, " ");
     if (plain) {

@@ -5,7 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* digest_mix: fold the 64-bit word x into the running fingerprint h (order matters). Start from DIGEST_START. */
+/* digest_mix: fold the 64-bit word x into the running fingerprint h (order matters). Start from
+ * DIGEST_START. */
 #define DIGEST_START UINT64_C(0x9e3779b97f4a7c15)
 static inline uint64_t digest_mix(uint64_t h, uint64_t x)
 {

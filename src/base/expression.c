@@ -118,6 +118,7 @@ static struct expression *read_number(struct parser *p)
         return x;
     }
     while (*unit == ' ') unit++;
+    /* both candidates: the letters, and the letters with what is divided by */
     size_t first = 0, whole;
     while (isalpha((unsigned char)unit[first])) first++;
     whole = first;
@@ -143,6 +144,7 @@ static struct expression *read_function(struct parser *p, const char *name)
     const bool two = strcmp(name, "min") == 0 || strcmp(name, "max") == 0;
     if (!two && strcmp(name, "log2") != 0 && strcmp(name, "sqrt") != 0)
         return mistake(p, "a function that is none of log2, sqrt, min, max");
+    /* each argument is a whole expression: the comma binds loosest of all */
     struct expression *left = read_or(p), *right = NULL;
     if (left == NULL) return NULL;
     if (two) {
@@ -201,7 +203,8 @@ static struct expression *read_chain(struct parser *p, enum operation operation,
                                      struct expression *(*part)(struct parser *))
 {
     struct expression *x = part(p);
-    /* after each operator all of them are tried again */
+    /* one operator a turn, and the tree grows to the left;
+     * after each operator all of them are tried again */
     for (int i = 0; x != NULL && sign[i] != NULL;) {
         if (!take(p, sign[i])) {
             i++;

@@ -1,4 +1,5 @@
-/* json.h - a streaming JSON writer: nesting and commas handled, non-finite numbers written as null. */
+/* json.h - a streaming JSON writer: nesting and commas handled, non-finite numbers written as
+ * null. */
 #ifndef BASE_JSON_H
 #define BASE_JSON_H
 

@@ -10,7 +10,8 @@ struct random {
     uint64_t s[4];
 };
 
-/* random_make: the stream of (seed, a, b); a and b name its purpose and owner (rank, body, repetition). */
+/* random_make: the stream of (seed, a, b); a and b name its purpose and owner (rank, body,
+ * repetition). */
 struct random random_make(uint64_t seed, uint64_t a, uint64_t b);
 
 /* random_u64: the next 64 bits. */

@@ -8,9 +8,10 @@
 
 #include "base/err.h"
 
-/* text_nearest: the name among `names` (n of them) with the smallest edit distance to `word` (a swap of two
- * neighbours counts one), ignoring case, the first of equals. When none is close enough to be a likely
- * misspelling (distance > 1 + length/3): the shortest name that `word` abbreviates, or NULL. */
+/* text_nearest: the name among `names` (n of them) with the smallest edit distance to `word` (a
+ * swap of two neighbours counts one), ignoring case, the first of equals. When none is close enough
+ * to be a likely misspelling (distance > 1 + length/3): the shortest name that `word` abbreviates,
+ * or NULL. */
 const char *text_nearest(const char *word, const char *const *names, int n);
 
 /* A growing text on the heap; start from {0}, end with text_free. */
@@ -32,19 +33,22 @@ void text_add_bytes(struct text *t, const char *s, size_t n);
 /* text_free: give the memory back and return to {0}. */
 void text_free(struct text *t);
 
-/* text_open_file: the regular file `path` for reading, opened without waiting for anybody, and not through a pipe or a
- * device, which may have no end. Returns NULL with ERR_NO_INPUT (not there), ERR_DATA (no regular file) or ERR_IO. */
+/* text_open_file: the regular file `path` for reading, opened without waiting for anybody, and not
+ * through a pipe or a device, which may have no end. Returns NULL with ERR_NO_INPUT (not there),
+ * ERR_DATA (no regular file) or ERR_IO. */
 FILE *text_open_file(const char *path, struct err *e);
 
-/* text_read_file: the whole regular file `path` into *t (replaced). Returns false with ERR_NO_INPUT, ERR_DATA (no
- * regular file), ERR_CONFIG (larger than this computer's memory) or ERR_IO. */
+/* text_read_file: the whole regular file `path` into *t (replaced). Returns false with
+ * ERR_NO_INPUT, ERR_DATA (no regular file), ERR_CONFIG (larger than this computer's memory) or
+ * ERR_IO. */
 bool text_read_file(struct text *t, const char *path, struct err *e);
 
-/* text_read_stream: all that is left of `in` into *t (replaced), for standard input; `name` is what messages call it.
- * Returns false with ERR_IO. */
+/* text_read_stream: all that is left of `in` into *t (replaced), for standard input; `name` is what
+ * messages call it. Returns false with ERR_IO. */
 bool text_read_stream(struct text *t, FILE *in, const char *name, struct err *e);
 
-/* text_stream: a stream that appends what is printed on it to *t, until it is closed with text_stream_end. */
+/* text_stream: a stream that appends what is printed on it to *t, until it is closed with
+ * text_stream_end. */
 FILE *text_stream(struct text *t);
 void text_stream_end(FILE *stream);
 

@@ -1,7 +1,8 @@
 /* units.h - quantities with units as written in files and on the command line.
  *
- * Every dimensioned number carries its unit; bits and bytes differ by 8 (Gb/s, GB/s); prefixes are SI (k M G T,
- * m u n p) and binary (Ki Mi Gi) for bytes. Values are held in SI base units: s, B, B/s, Hz, flop/s, m, kg, N, rad. */
+ * Every dimensioned number carries its unit; bits and bytes differ by 8 (Gb/s, GB/s); prefixes are
+ * SI (k M G T, m u n p) and binary (Ki Mi Gi) for bytes. Values are held in SI base units: s, B,
+ * B/s, Hz, flop/s, m, kg, N, rad. */
 #ifndef BASE_UNITS_H
 #define BASE_UNITS_H
 
@@ -32,17 +33,20 @@ enum unit {
 
 /* units_parse: read "480 MB/s" as a quantity of kind `unit` into *value (SI).
  *
- *   why   buffer of `size` bytes that receives, on failure, what is wrong and what was expected, as a clause
+ *   why   buffer of `size` bytes that receives, on failure, what is wrong and what was expected, as
+ * a clause
  *         ("no unit; expected a bandwidth such as '480 MB/s'")
  *
  *   Returns false on a missing or wrong unit, trailing text, or a number that is not finite. */
 bool units_parse(const char *text, enum unit unit, double *value, char *why, int size);
 
-/* units_print: `value` (SI) with a readable prefix into buffer; reads back to the same double with units_parse. */
+/* units_print: `value` (SI) with a readable prefix into buffer; reads back to the same double with
+ * units_parse. */
 void units_print(double value, enum unit unit, char *buffer, int size);
 
-/* units_name: what the kind is called in messages ("a bandwidth"); units_example: one example ("480 MB/s");
- * units_si: the SI symbol used in SQL column names and tables ("B_per_s", "s", "" for UNIT_NONE). */
+/* units_name: what the kind is called in messages ("a bandwidth"); units_example: one example ("480
+ * MB/s"); units_si: the SI symbol used in SQL column names and tables ("B_per_s", "s", "" for
+ * UNIT_NONE). */
 const char *units_name(enum unit unit);
 const char *units_example(enum unit unit);
 const char *units_si(enum unit unit);

@@ -1,7 +1,9 @@
-/* work.h - counts of what a piece of computing did, in the classes that a node's cost distinguishes.
+/* work.h - counts of what a piece of computing did, in the classes that a node's cost
+ * distinguishes.
  *
- * Kernels and the mechanics count as they go; `node_cost` (room machine) turns the counts into simulated
- * time. Counts are of useful operations in the source, so they do not depend on compiler or host. */
+ * Kernels and the mechanics count as they go; `node_cost` (room machine) turns the counts into
+ * simulated time. Counts are of useful operations in the source, so they do not depend on compiler
+ * or host. */
 #ifndef BASE_WORK_H
 #define BASE_WORK_H
 

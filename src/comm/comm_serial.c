@@ -7,13 +7,15 @@
 
 #include "base/check.h"
 
-static void no_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
+static void no_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                     struct comm_request *r)
 {
     (void)tag, (void)data, (void)bytes, (void)r;
     CHECK(dst < c->size && dst != c->rank);
 }
 
-static void no_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
+static void no_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes,
+                     struct comm_request *r)
 {
     (void)tag, (void)buffer, (void)bytes, (void)r;
     CHECK(src < c->size && src != c->rank);
@@ -40,8 +42,8 @@ static void set_stage(struct comm *c, int stage)
 }
 
 /* A message from anywhere can never come. */
-static void no_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer, int64_t capacity,
-                              struct comm_request *r)
+static void no_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer,
+                              int64_t capacity, struct comm_request *r)
 {
     (void)src, (void)tag, (void)mask, (void)buffer, (void)capacity, (void)r;
     CHECK(c->size > 1);
@@ -55,8 +57,8 @@ static int no_completion(struct comm *c, int n, struct comm_request *const *r, i
     return -1;
 }
 
-static int no_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block, struct comm_envelope *out,
-                    struct comm_request *take)
+static int no_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
+                    struct comm_envelope *out, struct comm_request *take)
 {
     (void)c, (void)src, (void)tag, (void)mask, (void)out, (void)take;
     CHECK(!block);

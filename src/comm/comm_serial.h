@@ -1,4 +1,5 @@
-/* comm_serial.h - comm.h on one rank without any simulator: the bare kernel, its work counted by stage. */
+/* comm_serial.h - comm.h on one rank without any simulator: the bare kernel, its work counted by
+ * stage. */
 #ifndef COMM_COMM_SERIAL_H
 #define COMM_COMM_SERIAL_H
 
@@ -12,7 +13,8 @@ struct comm_serial {
     struct work work[COMM_SERIAL_STAGES]; /* counted so far, by stage */
 };
 
-/* comm_serial_make: a communicator of one rank. There is nobody to talk to: sending or receiving is a CHECK. */
+/* comm_serial_make: a communicator of one rank. There is nobody to talk to: sending or receiving is
+ * a CHECK. */
 struct comm_serial comm_serial_make(void);
 
 #endif

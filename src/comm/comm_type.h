@@ -25,7 +25,8 @@ struct comm_request {
     int64_t posted_ps;      /* receive: when it was posted */
     uint16_t kind, open;    /* of the implementation */
     uint32_t watch;         /* number under which it is watched, 0: it is not */
-    uint32_t path;          /* of the implementation: what made a send complete, for critical paths */
+    /* of the implementation: what made a send complete, for critical paths */
+    uint32_t path;
 };
 
 struct comm_envelope;

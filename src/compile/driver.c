@@ -95,8 +95,9 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     const bool plain = s->language != NULL ? strcmp(s->language, "assembler") == 0
                                            : dot != NULL && strcmp(dot, ".s") == 0;
     if (s->assembly && plain)
-        return (strcmp(s->path, "-") == 0 ? text_read_stream(assembly, stdin, "standard input", d->e)
-                                          : text_read_file(assembly, s->path, d->e))
+        return (strcmp(s->path, "-") == 0
+                    ? text_read_stream(assembly, stdin, "standard input", d->e)
+                    : text_read_file(assembly, s->path, d->e))
                    ? 0
                    : FAILED;
     struct words w = new_words(d);
@@ -104,8 +105,8 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     add_includes(d, &w);
     command_dependency_words(&d->command, i, object, &w);
     if (!s->assembly) words_add_all(&w, FORCED, forced);
-    /* One program sends whole numbers and reals by the same mpi_send, which Fortran's rules forbid.
-     */
+    /* One program sends whole numbers and reals by the same mpi_send, which Fortran's rules
+     * forbid. */
     if (!s->assembly && d->language == DRIVER_FORTRAN) {
         words_add(&w, "-fallow-argument-mismatch");
         words_add(&w,
@@ -126,8 +127,8 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
 static int filter(struct driver *d, const struct command_source *s, const struct text *in,
                   struct text *out)
 {
-    /* libgfortran calls no procedure of the program, and many of these have arguments on the stack.
-     */
+    /* libgfortran calls no procedure of the program, and many of these have arguments on the
+     * stack. */
     const bool guarded = !s->assembly && d->language != DRIVER_FORTRAN;
     const struct block_source source = {s->path, d->command.flags, s->assembly, guarded};
     if (block_filter(in, &source, out, d->e)) return 0;

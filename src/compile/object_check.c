@@ -161,8 +161,7 @@ static bool refuse(const char *name, const char *in, struct err *e)
 {
     return err_set(e, ERR_DATA,
                    "%s%s%s was not compiled by `mimdsim cc`, `c++` or `f90`: its computing time "
-                   "would not be counted; "
-                   "compile it again with CC=\"mimdsim cc\"",
+                   "would not be counted; compile it again with CC=\"mimdsim cc\"",
                    name, in != NULL ? " in " : "", in != NULL ? in : "");
 }
 

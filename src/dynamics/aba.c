@@ -1,7 +1,8 @@
 /* aba.c - articulated bodies for every joint type, physics (2.6), (2.7).
  *
- * In the orthonormal columns [H W] of the joint, eliminating it leaves S = I_ww - I_wh I_hh^-1 I_hw; then
- * I^a = W S W^T exactly, with nothing along H, and p^a = H tau + W (...). That keeps symmetry and the exact zeros. */
+ * In the orthonormal columns [H W] of the joint, eliminating it leaves S = I_ww - I_wh I_hh^-1
+ * I_hw; then I^a = W S W^T exactly, with nothing along H, and p^a = H tau + W (...). That keeps
+ * symmetry and the exact zeros. */
 #include "dynamics/dynamics.h"
 #include "dynamics/revolute.h"
 #include "dynamics/work_count.h"
@@ -33,7 +34,8 @@ static void to_joint_axes(const struct subspace *s, const struct articulated *b,
     for (int j = 0; j < 6; j++)
         for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * j);
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j <= i; j++) m[6 * i + j] = m[6 * j + i] = screw_dot(s->col + 6 * i, t + 6 * j);
+        for (int j = 0; j <= i; j++)
+            m[6 * i + j] = m[6 * j + i] = screw_dot(s->col + 6 * i, t + 6 * j);
         p[i] = screw_dot(s->col + 6 * i, b->p);
     }
 }
@@ -43,8 +45,9 @@ static void from_joint_axes(const struct subspace *s, const real *schur, struct 
 {
     /* Where entry (r, k) of the full matrix lies among the 21 of struct sym6: its blocks a,
      * b, c. */
-    static const signed char at[6][6] = {{0, 1, 2, 6, 7, 8},    {1, 3, 4, 9, 10, 11},    {2, 4, 5, 12, 13, 14},
-                                         {6, 9, 12, 15, 16, 17}, {7, 10, 13, 16, 18, 19}, {8, 11, 14, 17, 19, 20}};
+    static const signed char at[6][6] = {{0, 1, 2, 6, 7, 8},      {1, 3, 4, 9, 10, 11},
+                                         {2, 4, 5, 12, 13, 14},   {6, 9, 12, 15, 16, 17},
+                                         {7, 10, 13, 16, 18, 19}, {8, 11, 14, 17, 19, 20}};
     real *flat[21];
     for (int k = 0; k < 6; k++) flat[k] = &out->a[k], flat[15 + k] = &out->c[k];
     for (int k = 0; k < 9; k++) flat[6 + k] = &out->b[k];
@@ -52,19 +55,22 @@ static void from_joint_axes(const struct subspace *s, const real *schur, struct 
     for (int i = 0; i < s->c; i++) {
         /* W has unit columns: rows and columns of S only move to their places. */
         if (s->pick) {
-            for (int j = 0; j <= i; j++) *flat[at[s->pick[s->d + i]][s->pick[s->d + j]]] = schur[6 * i + j];
+            for (int j = 0; j <= i; j++)
+                *flat[at[s->pick[s->d + i]][s->pick[s->d + j]]] = schur[6 * i + j];
             continue;
         }
         for (int j = 0; j < s->c; j++)
             for (int r = 0; r < 6; r++)
                 for (int k = r; k < 6; k++)
-                    *flat[at[r][k]] += s->col[6 * (s->d + i) + r] * schur[6 * i + j] * s->col[6 * (s->d + j) + k];
+                    *flat[at[r][k]] +=
+                        s->col[6 * (s->d + i) + r] * schur[6 * i + j] * s->col[6 * (s->d + j) + k];
     }
 }
 
-/* Eliminate the joint: factors and e stay in b; ia, pa are what the parent gets (body axes). bias NULL: none. */
-static bool eliminate(const struct subspace *s, const real *bias, const real *tau, struct articulated *b,
-                      struct sym6 *ia, real *pa)
+/* Eliminate the joint: factors and e stay in b; ia, pa are what the parent gets (body axes). bias
+ * NULL: none. */
+static bool eliminate(const struct subspace *s, const real *bias, const real *tau,
+                      struct articulated *b, struct sym6 *ia, real *pa)
 {
     int d = s->d, c = s->c;
     real m[36], p[6], y[36], schur[36], along_w[6];
@@ -85,7 +91,8 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     for (int i = 0; i < c; i++)
         for (int j = 0; j <= i; j++) {
             real sum = m[6 * (d + i) + d + j];
-            for (int k = 0; k < d; k++) sum -= y[c * k + i] * b->g[packed_index(k, k)] * y[c * k + j];
+            for (int k = 0; k < d; k++)
+                sum -= y[c * k + i] * b->g[packed_index(k, k)] * y[c * k + j];
             schur[6 * i + j] = schur[6 * j + i] = sum;
         }
     from_joint_axes(s, schur, ia);
@@ -116,7 +123,8 @@ static void start(const struct dynamics *d, int i, bool moving, struct articulat
 }
 
 /* u' = I_hh^-1 (e - I_hw a_w) - a_h, and the body's acceleration. */
-static void accelerate(struct dynamics *d, int i, bool moving, const struct articulated *b, real *ud)
+static void accelerate(struct dynamics *d, int i, bool moving, const struct articulated *b,
+                       real *ud)
 {
     static const real still[6] = {0};
     const struct subspace *s = &d->pose[i].s;
@@ -156,20 +164,23 @@ static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;
         real pa[6];
-        good = eliminate(&d->pose[i].s, biased ? d->bias + 6 * i : NULL, tau + body->u_at, &b[i], &ia, pa);
+        good = eliminate(&d->pose[i].s, biased ? d->bias + 6 * i : NULL, tau + body->u_at, &b[i],
+                         &ia, pa);
         if (!good || body->parent < 0) continue;
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);
         xform_force(pa, &d->pose[i].x, pa);
         screw_add(b[body->parent].p, pa);
     }
-    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, moving, &b[i], ud + d->body[i].u_at);
+    for (int i = 0; i < d->nbody && good; i++)
+        accelerate(d, i, moving, &b[i], ud + d->body[i].u_at);
     arena_release(d->arena, mark);
     return good;
 }
 
 /* The general case: any joints, at rest or in motion. */
-bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+              struct work *w)
 {
     dynamics_place(d, q);
     dynamics_velocities(d, u);
@@ -187,7 +198,8 @@ bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w)
 }
 
 /* All-revolute systems have a faster text of their own. */
-bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+         struct work *w)
 {
     return d->revolute ? aba_revolute(d, q, u, tau, ud, w) : aba_full(d, q, u, tau, ud, w);
 }

@@ -1,7 +1,8 @@
 /* aba_revolute.c - articulated bodies for all-revolute systems, 629 flops a body.
  *
- * The articulated inertia [A B; B^T C] is symmetric by storage. After its joint is eliminated, row z of A and B is
- * zero exactly, and so is the force p along it but for tau: none of that is computed. */
+ * The articulated inertia [A B; B^T C] is symmetric by storage. After its joint is eliminated, row
+ * z of A and B is zero exactly, and so is the force p along it but for tau: none of that is
+ * computed. */
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 
@@ -23,8 +24,8 @@ struct motion {
 
 /* Velocity, bias acceleration and velocity force of one body. */
 enum {
-    START_FLOP = MAT3_VEC_FLOP + 2 + 1 + 2 * VEC3_CROSS_FLOP + MAT3_VEC_FLOP + 2 * VEC3_CROSS_FLOP + VEC3_SCALE_FLOP +
-                 SYM3_VEC_FLOP + VEC3_CROSS_FLOP + VEC3_CROSS_ADD_FLOP
+    START_FLOP = MAT3_VEC_FLOP + 2 + 1 + 2 * VEC3_CROSS_FLOP + MAT3_VEC_FLOP + 2 * VEC3_CROSS_FLOP +
+                 VEC3_SCALE_FLOP + SYM3_VEC_FLOP + VEC3_CROSS_FLOP + VEC3_CROSS_ADD_FLOP
 };
 static inline void start(const struct revolute *b, real u, const real *wp, real *w, struct link *l)
 {
@@ -62,16 +63,20 @@ static inline void rigid(const struct revolute *b, struct link *l)
     l->c[1] = l->c[2] = l->c[4] = 0;
 }
 
-/* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n (x, y), f. At rest b
- * is zero. */
-enum { ELIMINATE_AT_REST_FLOP = 1 + 5 + 1 + 6 + 12 + 12 + 10, ELIMINATE_FLOP = ELIMINATE_AT_REST_FLOP + 5 * 10 };
+/* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n
+ * (x, y), f. At rest b is zero. */
+enum {
+    ELIMINATE_AT_REST_FLOP = 1 + 5 + 1 + 6 + 12 + 12 + 10,
+    ELIMINATE_FLOP = ELIMINATE_AT_REST_FLOP + 5 * 10
+};
 static inline bool eliminate(struct link *l, bool at_rest, real tau)
 {
     real *a = l->a, *b = l->b, *c = l->c, d = a[5];
     if (!(d > 0)) return false;
     /* (2.6) with H = z: D is one number, Q is row z of the inertia. One division, then products. */
     real inverse = 1 / d, e = tau - l->n[2];
-    real kx = a[2] * inverse, ky = a[4] * inverse, k0 = b[6] * inverse, k1 = b[7] * inverse, k2 = b[8] * inverse;
+    real kx = a[2] * inverse, ky = a[4] * inverse, k0 = b[6] * inverse, k1 = b[7] * inverse,
+         k2 = b[8] * inverse;
     l->kx = kx, l->ky = ky, l->kl[0] = k0, l->kl[1] = k1, l->kl[2] = k2;
     l->ez = e * inverse;
     /* Q D^-1 Q^T lowers what is not in row z; that row is zero now, and nobody reads it. */
@@ -96,9 +101,11 @@ static inline bool eliminate(struct link *l, bool at_rest, real tau)
     return true;
 }
 
-/* Rotated blocks of the eliminated inertia, in parent axes: ra = r A r^T, rb = r B r^T, rc = r C r^T. */
+/* Rotated blocks of the eliminated inertia, in parent axes: ra = r A r^T, rb = r B r^T, rc = r C
+ * r^T. */
 enum { ROTATE_FLOP = 18 + 18 + 27 + MAT3_MUL_FLOP + SYM3_ROTATE_FLOP };
-static inline void rotate(const struct link *l, real *restrict ra, real *restrict rb, real *restrict rc)
+static inline void rotate(const struct link *l, real *restrict ra, real *restrict rb,
+                          real *restrict rc)
 {
     const real *r = l->r, *a = l->a, *b = l->b, *c = l->c;
     real t[9];
@@ -107,8 +114,10 @@ static inline void rotate(const struct link *l, real *restrict ra, real *restric
         t[2 * i] = row[0] * a[0] + row[1] * a[1];
         t[2 * i + 1] = row[0] * a[1] + row[1] * a[3];
     }
-    ra[0] = t[0] * r[0] + t[1] * r[1], ra[1] = t[0] * r[3] + t[1] * r[4], ra[2] = t[0] * r[6] + t[1] * r[7];
-    ra[3] = t[2] * r[3] + t[3] * r[4], ra[4] = t[2] * r[6] + t[3] * r[7], ra[5] = t[4] * r[6] + t[5] * r[7];
+    ra[0] = t[0] * r[0] + t[1] * r[1], ra[1] = t[0] * r[3] + t[1] * r[4],
+    ra[2] = t[0] * r[6] + t[1] * r[7];
+    ra[3] = t[2] * r[3] + t[3] * r[4], ra[4] = t[2] * r[6] + t[3] * r[7],
+    ra[5] = t[4] * r[6] + t[5] * r[7];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) t[3 * i + j] = r[3 * i] * b[j] + r[3 * i + 1] * b[3 + j];
     mat3_mul_transposed(rb, t, r);
@@ -117,8 +126,8 @@ static inline void rotate(const struct link *l, real *restrict ra, real *restric
 
 /* Parent's inertia and force += those of the eliminated child, moved by (r, t). */
 enum {
-    HAND_DOWN_FLOP = ROTATE_FLOP + 36 + 3 * 7 + 3 * 9 + 9 + 6 + 2 * MAT3_VEC_FLOP + 2 * VEC3_ADD_FLOP +
-                     VEC3_CROSS_ADD_FLOP
+    HAND_DOWN_FLOP = ROTATE_FLOP + 36 + 3 * 7 + 3 * 9 + 9 + 6 + 2 * MAT3_VEC_FLOP +
+                     2 * VEC3_ADD_FLOP + VEC3_CROSS_ADD_FLOP
 };
 static inline void hand_down(const struct revolute *body, const struct link *l, struct link *parent)
 {
@@ -149,8 +158,8 @@ enum {
     ACCELERATE_AT_REST_FLOP = VEC3_CROSS_ADD_FLOP + 2 * MAT3_VEC_FLOP + 10 + 1,
     ACCELERATE_FLOP = ACCELERATE_AT_REST_FLOP + VEC3_ADD_FLOP + 2
 };
-static inline real accelerate(const struct revolute *body, const struct link *l, bool at_rest, const struct motion *p,
-                              struct motion *m)
+static inline real accelerate(const struct revolute *body, const struct link *l, bool at_rest,
+                              const struct motion *p, struct motion *m)
 {
     real al[3], v[3];
     vec3_copy(v, p->v);
@@ -163,14 +172,16 @@ static inline real accelerate(const struct revolute *body, const struct link *l,
     }
     /* (2.7). Q_z / D is 1, so z is the whole acceleration about the axis, and u' is what the
      * parent does not bring along. */
-    real z = l->ez - (l->kx * al[0] + l->ky * al[1] + (l->kl[0] * v[0] + l->kl[1] * v[1] + l->kl[2] * v[2]));
+    real z = l->ez - (l->kx * al[0] + l->ky * al[1] +
+                      (l->kl[0] * v[0] + l->kl[1] * v[1] + l->kl[2] * v[2]));
     vec3_set(m->w, al[0], al[1], z);
     vec3_copy(m->v, v);
     return z - al[2];
 }
 
 /* The three sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
-static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const real *u, const real *tau, real *ud)
+static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const real *u,
+                         const real *tau, real *ud)
 {
     int n = d->nbody;
     real *sine = d->scratch, *cosine = sine + n;
@@ -201,17 +212,20 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     vec3_copy(base.v, d->base + 3);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
-        ud[i] = accelerate(b, &link[i], at_rest, b->parent < 0 ? &base : &motion[b->parent], &motion[i]);
+        ud[i] = accelerate(b, &link[i], at_rest, b->parent < 0 ? &base : &motion[b->parent],
+                           &motion[i]);
     }
     return true;
 }
 
 /* The rest state is compiled apart: no branch on it stands in the sweeps. */
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+                  struct work *w)
 {
     const int body = MAT3_TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
     const int moving = d->at_rest ? ELIMINATE_AT_REST_FLOP + ACCELERATE_AT_REST_FLOP
                                   : START_FLOP + ELIMINATE_FLOP + ACCELERATE_FLOP;
-    revolute_count(d, (struct revolute_cost){.body = body + moving, .child = HAND_DOWN_FLOP, .div = 1}, w);
+    revolute_count(
+        d, (struct revolute_cost){.body = body + moving, .child = HAND_DOWN_FLOP, .div = 1}, w);
     return d->at_rest ? sweep(d, true, q, u, tau, ud) : sweep(d, false, q, u, tau, ud);
 }

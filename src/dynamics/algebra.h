@@ -1,5 +1,5 @@
-/* algebra.h - bodies, loops, transforms and vectors of the build's space: those of body.h and loop.h, or those of
- * planar_body.h and planar_loop.h.
+/* algebra.h - bodies, loops, transforms and vectors of the build's space: those of body.h and
+ * loop.h, or those of planar_body.h and planar_loop.h.
  *
  * The programs are written once for both; sizes are SPACE, SQUARE, PACKED and XFORM_NUMBERS. */
 #ifndef DYNAMICS_ALGEBRA_H

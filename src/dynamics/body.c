@@ -1,4 +1,5 @@
-/* body.c - a body's constants in this precision: rounding of body_constants, external wrenches, springs. */
+/* body.c - a body's constants in this precision: rounding of body_constants, external wrenches,
+ * springs. */
 #include "dynamics/body.h"
 
 #include "dynamics/body_constants.h"
@@ -9,7 +10,8 @@ static void round_to(real *y, const quad *x, int n)
     for (int i = 0; i < n; i++) y[i] = (real)x[i];
 }
 
-/* Inertia about both points: the bias force of a distant origin is computed about the centre of mass. */
+/* Inertia about both points: the bias force of a distant origin is computed about the centre of
+ * mass. */
 static void make_inertia(const struct model *m, int i, struct body *b)
 {
     struct body_constants c;
@@ -41,17 +43,20 @@ static void make_frames(const struct model *m, int i, struct body *b)
     body_springs(m, i, b);
 }
 
-/* Whether bodies i and j have the same inertia, in frames turned alike; whether all else is the same, too. */
+/* Whether bodies i and j have the same inertia, in frames turned alike; whether all else is the
+ * same, too. */
 static bool same_inertia(const struct model *m, int i, int j)
 {
     return bodies_alike(m, i, j) && bodies_weigh_alike(m, i, j);
 }
 static bool same_frames(const struct model *m, int i, int j)
 {
-    return bodies_alike(m, i, j) && bodies_alike(m, m->body[i].parent, m->body[j].parent) && bodies_hang_alike(m, i, j);
+    return bodies_alike(m, i, j) && bodies_alike(m, m->body[i].parent, m->body[j].parent) &&
+           bodies_hang_alike(m, i, j);
 }
 
-/* Chains have thousands of equal links: the constants of a body are those of its predecessor where nothing differs. */
+/* Chains have thousands of equal links: the constants of a body are those of its predecessor where
+ * nothing differs. */
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     if (REAL_BITS == 64 && m->constants) return m->constants;
@@ -68,7 +73,8 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
 /* Gravity is an acceleration of the base (physics 1.6). */
 void base_motion(const struct model *m, const struct state *s, real *a)
 {
-    for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
+    for (int i = 0; i < 6; i++)
+        a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
 }
 
 /* For codes that multiply the inertia out of its factors (kernel/chain.c, forward_exact.c). */

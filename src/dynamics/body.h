@@ -1,10 +1,12 @@
-/* body.h - one body's constants and its local computations in the build's precision: all that a kernel needs.
+/* body.h - one body's constants and its local computations in the build's precision: all that a
+ * kernel needs.
  *
- * Internally a body's frame is turned so that its joint's axis is z (universal: axes x, y), spatial order is
- * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
- * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
- * pass unchanged between model order and here. H and its complement W are orthonormal.
- * What is different for each joint type stands in a file of its own (joint_motion.h). */
+ * Internally a body's frame is turned so that its joint's axis is z (universal: axes x, y), spatial
+ * order is [angular; linear], accelerations are classical. The constants are made once, in quad
+ * precision, and rounded once. Columns of H are ordered as u (a floating joint's H therefore is a
+ * permutation: linear first), so q, u, u', tau pass unchanged between model order and here. H and
+ * its complement W are orthonormal. What is different for each joint type stands in a file of its
+ * own (joint_motion.h). */
 #ifndef DYNAMICS_BODY_H
 #define DYNAMICS_BODY_H
 
@@ -24,18 +26,22 @@ struct body {
     struct inertia inertia; /* about the origin */
     struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
     real user[9];           /* user's body axes = user * internal axes */
-    real slide[9];          /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
+    /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
+    real slide[9];
     real stiffness, rest, damping;
 };
 
-/* joint_pick: the unit vectors that are H's and W's columns for a joint type (6); NULL: they are none. */
+/* joint_pick: the unit vectors that are H's and W's columns for a joint type (6); NULL: they are
+ * none. */
 const signed char *joint_pick(enum model_joint joint);
 
-/* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3). BODY_GYRO_FLOP. */
+/* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3).
+ * BODY_GYRO_FLOP. */
 enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_FORCE_FLOP = 42 };
 static inline void body_gyro(const struct body *b, const real *w, real *f)
 {
-    /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs no digits. */
+    /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs
+     * no digits. */
     real t[3];
     vec3_cross(t, w, b->s);
     vec3_cross(t, w, t);
@@ -56,16 +62,21 @@ static inline void body_force(const struct body *b, const real *a, real *f)
     vec3_cross_add(f, b->s, f + 3);
 }
 
-/* body_accelerate: a = Phi f (6); the body must have a Phi (model.has_phi). body_phi: Phi as a full matrix (6 x 6). */
+/* body_accelerate: a = Phi f (6); the body must have a Phi (model.has_phi). body_phi: Phi as a full
+ * matrix (6 x 6). */
 enum {
     BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP,
     BODY_PHI_FLOP = 0,
     BODY_SHARE_FLOP = 900 /* of a balanced partition: sweeps, assembly */
 };
-static inline void body_accelerate(const struct body *b, const real *f, real *a) { sym6_mul(a, &b->phi, f); }
+static inline void body_accelerate(const struct body *b, const real *f, real *a)
+{
+    sym6_mul(a, &b->phi, f);
+}
 static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
 
-/* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about shift^T is I. */
+/* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about
+ * shift^T is I. */
 void body_inertia_factors(const struct body *b, real *shift, real *about);
 
 /* body_load_flops: what body_load executes with a wrench. */

@@ -29,7 +29,8 @@ struct joint_cost {
     int bias;                         /* body_bias */
     int h, h_transposed;              /* subspace_h, subspace_h_transposed */
     int w, w_transposed;              /* subspace_w, subspace_w_transposed */
-    int hh, hw, ww;                   /* in space: subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
+    /* in space: subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
+    int hh, hw, ww;
     struct work subspace;             /* body_subspace */
     struct work qdot, step;           /* body_qdot, body_step */
 };
@@ -52,8 +53,8 @@ bool bodies_alike(const struct model *m, int i, int j);
 bool bodies_weigh_alike(const struct model *m, int i, int j);
 bool bodies_hang_alike(const struct model *m, int i, int j);
 
-/* body_seat: where body i of m hangs, which differs between otherwise equal bodies; body_springs: its
- * spring and damper. */
+/* body_seat: where body i of m hangs, which differs between otherwise equal bodies; body_springs:
+ * its spring and damper. */
 void body_seat(const struct model *m, int i, struct body *b);
 void body_springs(const struct model *m, int i, struct body *b);
 
@@ -91,9 +92,9 @@ void body_load(const struct body *b, const double *fext, real *f);
 enum { BODY_SPRING_FLOP = 5 };
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);
 
-/* body_step: coordinates after the time h at constant u, in place: rotations by the exponential map,
- * displacements in moving axes along those of mid-step. Symmetric in time, exact for one-degree
- * joints; quaternions stay normalised. */
+/* body_step: coordinates after the time h at constant u, in place: rotations by the exponential
+ * map, displacements in moving axes along those of mid-step. Symmetric in time, exact for
+ * one-degree joints; quaternions stay normalised. */
 void body_step(const struct body *b, real *q, const real *u, real h);
 
 /* body_qdot: qd (nq) = N(q) u, the derivative of the stored coordinates. */

@@ -70,11 +70,12 @@ static void own_axes(const struct body_def *b, quad *columns)
     rotation_from(columns, joint_has(b->joint, JOINT_ALONG_X) ? 0 : 2, n, t);
 }
 
-/* Whether the joint's axis is z as it stands and nothing else is asked of x and y: the common case. */
+/* Whether the joint's axis is z as it stands and nothing else is asked of x and y: the common
+ * case. */
 static bool along_z(const struct body_def *b)
 {
-    return !joint_has(b->joint, JOINT_TWO_AXES) && b->axis[0] == 0 && b->axis[1] == 0 && b->axis[2] > 0 &&
-           b->axis2[0] == 0 && b->axis2[1] == 0 && b->axis2[2] == 0;
+    return !joint_has(b->joint, JOINT_TWO_AXES) && b->axis[0] == 0 && b->axis[1] == 0 &&
+           b->axis[2] > 0 && b->axis2[0] == 0 && b->axis2[1] == 0 && b->axis2[2] == 0;
 }
 
 /* The rotation internal -> user of body i's frame: the joint's own axes. False: not turned. */
@@ -83,7 +84,8 @@ static bool turn_of(const struct model *m, int i, quad *r)
     mat3_identity(r);
     if (i < 0) return false;
     const struct body_def *b = &m->body[i];
-    if (along_z(b) || !joint_has(b->joint, JOINT_AXIS) || joint_has(b->joint, JOINT_AS_IT_LIES)) return false;
+    if (along_z(b) || !joint_has(b->joint, JOINT_AXIS) || joint_has(b->joint, JOINT_AS_IT_LIES))
+        return false;
     own_axes(b, r);
     return !(r[0] == 1 && r[4] == 1 && r[8] == 1);
 }
@@ -111,7 +113,8 @@ static void turn_back(quad *y, const quad *r, const quad *s)
 static bool invert(quad *y, const quad *s)
 {
     /* Cofactors of the first row give determinant and inverse. */
-    quad a = s[3] * s[5] - s[4] * s[4], b = s[2] * s[4] - s[1] * s[5], c = s[1] * s[4] - s[2] * s[3];
+    quad a = s[3] * s[5] - s[4] * s[4], b = s[2] * s[4] - s[1] * s[5],
+         c = s[1] * s[4] - s[2] * s[3];
     quad det = s[0] * a + s[1] * b + s[2] * c;
     if (!(s[0] > 0) || !(s[0] * s[3] - s[1] * s[1] > 0) || !(det > 0)) return false;
     y[0] = a / det, y[1] = b / det, y[2] = c / det;

@@ -1,8 +1,10 @@
-/* cfa.c - the constraint force algorithm, serial, in the paper's and the direct formulation; physics 4, 7, 8.6.
+/* cfa.c - the constraint force algorithm, serial, in the paper's and the direct formulation;
+ * physics 4, 7, 8.6.
  *
- * One routine does all of it: from the joint and loop forces known so far, accelerations of the bodies taken as free,
- * Y = Phi (P F + loops - P_gyro + load); what these violate, W^T Z and the loops' residual, is answered by more
- * constraint force through the factored system. The first pass is the solution, each further one a refinement. */
+ * One routine does all of it: from the joint and loop forces known so far, accelerations of the
+ * bodies taken as free, Y = Phi (P F + loops - P_gyro + load); what these violate, W^T Z and the
+ * loops' residual, is answered by more constraint force through the factored system. The first pass
+ * is the solution, each further one a refinement. */
 #include "dynamics/cfa_system.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/loops.h"
@@ -20,7 +22,9 @@ struct cfa_run {
     real *z;          /* (nbody x 6) W^T Z in the first c of each body */
     real *gyro;       /* (nbody x 6) velocity forces minus loads */
     real *bias;       /* (nu) paper's scheme: joint forces of inverse dynamics at u' = 0 */
-    bool full;        /* with velocity terms, loads and the base's acceleration; false: the response to forces alone */
+    /* with velocity terms, loads and the base's acceleration; false: the response to forces alone
+     * */
+    bool full;
     /* loops */
     real *response;   /* (nrow x nbody x 6) joint constraint forces answering each unit lambda */
     real *s, *reference;
@@ -53,7 +57,8 @@ static void accelerations(struct cfa_run *r)
     /* Y of (4.8): one product with Phi a body; D is never multiplied out. */
     for (int i = 0; i < d->nbody; i++) body_accelerate(&d->body[i], net + 6 * i, r->y + 6 * i);
     arena_release(d->arena, mark);
-    r->work.flop += (uint64_t)d->nbody * (BODY_ACCELERATE_FLOP + (has_gyro(r) ? SCREW_ADD_FLOP : 0));
+    r->work.flop +=
+        (uint64_t)d->nbody * (BODY_ACCELERATE_FLOP + (has_gyro(r) ? SCREW_ADD_FLOP : 0));
 }
 
 /* Z_i = Y_i - X^T Y_p - b_i. */
@@ -96,7 +101,8 @@ static void answer_joints(struct cfa_run *r)
     r->work.flop += (uint64_t)d->nbody * SCREW_ADD_FLOP;
 }
 
-/* Responses to unit loop forces and S = A_ll - A_tl^T A^-1 A_tl; f, lambda, full are used and restored. */
+/* Responses to unit loop forces and S = A_ll - A_tl^T A^-1 A_tl; f, lambda, full are used and
+ * restored. */
 static void border(struct cfa_run *r)
 {
     struct dynamics *d = r->d;
@@ -137,20 +143,23 @@ static void answer_loops(struct cfa_run *r, real *residual)
     struct dynamics *d = r->d;
     int m = r->loops.nrow, size = 6 * d->nbody;
     struct arena_mark mark = arena_mark(d->arena);
-    real *s = TAKE(d->arena, size_product(m, m), real), *room = TAKE(d->arena, size_product(m, m + 2), real);
+    real *s = TAKE(d->arena, size_product(m, m), real),
+         *room = TAKE(d->arena, size_product(m, m + 2), real);
     for (int k = 0; k < m * m; k++) s[k] = r->s[k];
     for (int k = 0; k < m; k++) residual[k] = -residual[k];
     /* Redundant loops leave lambda open, not u' (physics 7.4). */
     r->rank = least_norm_solve(m, r->reference, s, residual, room, &r->work);
     for (int k = 0; k < m; k++) {
         r->lambda[k] += residual[k];
-        for (int j = 0; j < size; j++) r->f[j] += residual[k] * r->response[(size_t)k * (size_t)size + (size_t)j];
+        for (int j = 0; j < size; j++)
+            r->f[j] += residual[k] * r->response[(size_t)k * (size_t)size + (size_t)j];
     }
     arena_release(d->arena, mark);
     r->work.flop += (uint64_t)m * (uint64_t)(1 + 2 * size);
 }
 
-/* One pass of the method. `wanted`: (nrow) homogeneous runs: the residual to reach; NULL: the loops' own. */
+/* One pass of the method. `wanted`: (nrow) homogeneous runs: the residual to reach; NULL: the
+ * loops' own. */
 static void pass(struct cfa_run *r, const real *wanted)
 {
     struct dynamics *d = r->d;
@@ -176,7 +185,8 @@ static void solve(struct cfa_run *r, const real *tau, const real *wanted, int in
     struct dynamics *d = r->d;
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] = 0;
     for (int k = 0; k < r->loops.nrow; k++) r->lambda[k] = 0;
-    for (int i = 0; i < d->nbody; i++) subspace_h(&d->pose[i].s, tau + d->body[i].u_at, r->f + 6 * i);
+    for (int i = 0; i < d->nbody; i++)
+        subspace_h(&d->pose[i].s, tau + d->body[i].u_at, r->f + 6 * i);
     /* The first pass solves, the others refine (physics 8.6). */
     for (int k = 0; k <= inner; k++) pass(r, wanted);
     accelerations(r);
@@ -184,13 +194,14 @@ static void solve(struct cfa_run *r, const real *tau, const real *wanted, int in
         real z[6];
         relative(r, i, z);
         subspace_h_transposed(&d->pose[i].s, z, ud + d->body[i].u_at);
-        r->work.flop += (uint64_t)(body_cost(&d->body[i])->h + body_cost(&d->body[i])->h_transposed);
+        r->work.flop +=
+            (uint64_t)(body_cost(&d->body[i])->h + body_cost(&d->body[i])->h_transposed);
     }
 }
 
 /* more, r->lambda = response to tau + J^T lambda - RNEA(ud): how far ud is from the truth. */
-static void correction(struct cfa_run *r, const real *q, const real *u, const real *tau, int inner, const real *ud,
-                       const real *lambda, real *more)
+static void correction(struct cfa_run *r, const real *q, const real *u, const real *tau, int inner,
+                       const real *ud, const real *lambda, real *more)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
@@ -214,7 +225,8 @@ static void correction(struct cfa_run *r, const real *q, const real *u, const re
 
 /* Outer refinement while corrections shrink; one that does not is left out. */
 static void refine_outer(struct cfa_run *r, const real *q, const real *u, const real *tau,
-                         const struct cfa_options *options, real *ud, real *lambda, struct cfa_report *report)
+                         const struct cfa_options *options, real *ud, real *lambda,
+                         struct cfa_report *report)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
@@ -253,9 +265,10 @@ static void velocity_terms(struct cfa_run *r, const real *u)
     r->work.flop += (uint64_t)d->nbody * ((d->at_rest ? 0 : BODY_GYRO_FLOP) + (d->load ? 6 : 0));
 }
 
-/* Memory, poses, velocities, factors. The paper's scheme has its velocity terms from inverse dynamics: bias forces in
- * r->bias (nu). */
-static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const real *q, const real *u)
+/* Memory, poses, velocities, factors. The paper's scheme has its velocity terms from inverse
+ * dynamics: bias forces in r->bias (nu). */
+static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const real *q,
+                    const real *u)
 {
     int n = d->nbody, m = d->model->nrow;
     r->d = d;
@@ -318,8 +331,9 @@ static double residual_of(struct cfa_run *r)
 }
 
 /* Solution, residual, refinement; massless bodies are refused, since they have no Phi. */
-bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, const struct cfa_options *options, real *ud,
-         real *lambda, struct cfa_report *report, struct work *w)
+bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau,
+         const struct cfa_options *options, real *ud, real *lambda, struct cfa_report *report,
+         struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     struct cfa_run r = {.full = true};

@@ -4,7 +4,10 @@
 #include "linalg/dense.h"
 
 /* Bodies with several children couple them; others pass on to the next joint only. */
-static int child_count(const struct dynamics *d, int i) { return d->model->child_at[i + 1] - d->model->child_at[i]; }
+static int child_count(const struct dynamics *d, int i)
+{
+    return d->model->child_at[i + 1] - d->model->child_at[i];
+}
 
 /* Phi of body i as it stands.
  * Phi of a body with several children is lowered by each child that is eliminated. */
@@ -58,13 +61,15 @@ static void project(const struct subspace *s, const struct sym6 *phi, real *g, s
     /* Picked columns: the entries are there already. */
     if (s->pick) {
         for (int i = 0; i < s->c; i++)
-            for (int j = 0; j <= i; j++) g[packed_index(i, j)] = full[6 * s->pick[s->d + i] + s->pick[s->d + j]];
+            for (int j = 0; j <= i; j++)
+                g[packed_index(i, j)] = full[6 * s->pick[s->d + i] + s->pick[s->d + j]];
         return;
     }
     for (int j = 0; j < s->c; j++)
         for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * (s->d + j));
     for (int i = 0; i < s->c; i++)
-        for (int j = 0; j <= i; j++) g[packed_index(i, j)] = screw_dot(s->col + 6 * (s->d + i), t + 6 * j);
+        for (int j = 0; j <= i; j++)
+            g[packed_index(i, j)] = screw_dot(s->col + 6 * (s->d + i), t + 6 * j);
     w->flop += (uint64_t)(SCREW_DOT_FLOP * (6 * s->c + packed_size(s->c)));
 }
 
@@ -109,12 +114,13 @@ static int couple(const struct body_pose *pose, const struct sym6 *phi, real *u,
         bool angular = is_angular(&pose->s, k);
         moved_column(pose, k, xw + 6 * k);
         phi_times(phi, xw + 6 * k, angular, u + 6 * k);
-        flop += angular ? 2 * MAT3_VEC_FLOP : SYM6_MUL_FLOP + (pose->s.pick ? VEC3_CROSS_FLOP : XFORM_FORCE_FLOP);
+        flop += angular ? 2 * MAT3_VEC_FLOP
+                        : SYM6_MUL_FLOP + (pose->s.pick ? VEC3_CROSS_FLOP : XFORM_FORCE_FLOP);
         for (int j = 0; j <= k; j++) {
             int first = is_angular(&pose->s, j) ? j : k, other = first == j ? k : j;
             bool short_dot = is_angular(&pose->s, first);
-            g[packed_index(k, j)] +=
-                short_dot ? vec3_dot(xw + 6 * first, u + 6 * other) : screw_dot(xw + 6 * first, u + 6 * other);
+            g[packed_index(k, j)] += short_dot ? vec3_dot(xw + 6 * first, u + 6 * other)
+                                               : screw_dot(xw + 6 * first, u + 6 * other);
             flop += short_dot ? VEC3_DOT_FLOP + 1 : SCREW_DOT_FLOP + 1;
         }
     }
@@ -174,9 +180,10 @@ bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
     return true;
 }
 
-/* Towards the root: r_i = L^-1 (r_i + what children left), its effect on the parent. beta (nbody x 6): accelerations
- * of bodies with several children by the forces eliminated there. */
-static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, real *r, real *beta, struct work *w)
+/* Towards the root: r_i = L^-1 (r_i + what children left), its effect on the parent. beta (nbody x
+ * 6): accelerations of bodies with several children by the forces eliminated there. */
+static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, real *r, real *beta,
+                         struct work *w)
 {
     const struct body_pose *pose = &d->pose[i];
     const struct cfa_row *row = &s->row[i];
@@ -199,15 +206,17 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
     for (int k = 0; k < c && parent >= 0; k++) {
         real scaled = r[6 * i + k] * row->g[packed_index(k, k)];
         real *to = alone ? r + 6 * parent : beta + 6 * parent;
-        for (int j = 0; j < row->width; j++) to[j] += (alone ? scaled : -scaled) * row->y[row->width * k + j];
+        for (int j = 0; j < row->width; j++)
+            to[j] += (alone ? scaled : -scaled) * row->y[row->width * k + j];
     }
     if (parent >= 0) w->flop += (uint64_t)(c * (1 + 2 * row->width));
     w->flop += (uint64_t)((carried ? XFORM_MOTION_FLOP : 0) + (gathers ? SCREW_ADD_FLOP : 0));
 }
 
-/* Towards the leaves: x_i = L^-T D^-1 (r_i + y g), g the parent's x or the joint force on it not yet spoken for. */
-static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i, real *r, real *g, real *x,
-                          struct work *w)
+/* Towards the leaves: x_i = L^-T D^-1 (r_i + y g), g the parent's x or the joint force on it not
+ * yet spoken for. */
+static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i, real *r, real *g,
+                          real *x, struct work *w)
 {
     const struct body_pose *pose = &d->pose[i];
     const struct cfa_row *row = &s->row[i];
@@ -236,7 +245,8 @@ static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i,
 void cfa_solve(struct dynamics *d, const struct cfa_system *s, real *r, real *x, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
-    real *beta = TAKE(d->arena, size_product(6, d->nbody), real), *g = TAKE(d->arena, size_product(6, d->nbody), real);
+    real *beta = TAKE(d->arena, size_product(6, d->nbody), real),
+         *g = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int i = d->nbody - 1; i >= 0; i--) solve_inward(d, s, i, r, beta, w);
     for (int i = 0; i < d->nbody; i++) solve_outward(d, s, i, r, g, x, w);
     arena_release(d->arena, mark);

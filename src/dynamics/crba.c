@@ -1,4 +1,5 @@
-/* crba.c - composite rigid bodies: the mass matrix, and forward dynamics through it, physics 2.3. */
+/* crba.c - composite rigid bodies: the mass matrix, and forward dynamics through it, physics
+ * 2.3. */
 #include "dynamics/dynamics.h"
 #include "dynamics/revolute.h"
 #include "dynamics/work_count.h"
@@ -32,7 +33,8 @@ static void fill_rows(const struct dynamics *d, int i, const struct inertia *com
     /* one triangle decides */
     for (int k = 0; k < b->d; k++)
         for (int r = 0; r < k; r++)
-            mass[(size_t)(b->u_at + r) * d->nu + b->u_at + k] = mass[(size_t)(b->u_at + k) * d->nu + b->u_at + r];
+            mass[(size_t)(b->u_at + r) * d->nu + b->u_at + k] =
+                mass[(size_t)(b->u_at + k) * d->nu + b->u_at + r];
     /* The force I^c H u' is felt by every ancestor's joint: one transform a step of the walk. */
     for (int j = i; d->body[j].parent >= 0;) {
         const struct body *p = &d->body[d->body[j].parent];
@@ -101,8 +103,9 @@ static void cholesky_solve(int n, const real *m, real *x)
     }
 }
 
-/* The velocity before u-index k on the path to the root (-1: none), for L^T D L along the tree (Featherstone 8.3).
- * M has entries between a joint and its ancestors alone, and L^T D L keeps that. */
+/* The velocity before u-index k on the path to the root (-1: none), for L^T D L along the tree
+ * (Featherstone 8.3). M has entries between a joint and its ancestors alone, and L^T D L keeps
+ * that. */
 static void path_of(const struct dynamics *d, int *up)
 {
     for (int i = 0; i < d->nbody; i++) {
@@ -148,8 +151,8 @@ static void sparse_solve(int n, const int *up, const real *m, real *x, struct wo
 }
 
 /* M u' = tau - xi; xi is inverse dynamics at u' = 0. */
-bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *tau, bool sparse, real *ud,
-                  struct work *w)
+bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *tau, bool sparse,
+                  real *ud, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     struct work own = {0};

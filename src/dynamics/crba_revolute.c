@@ -1,8 +1,9 @@
-/* crba_revolute.c - mass matrix of all-revolute systems: composites locally, products in common axes.
+/* crba_revolute.c - mass matrix of all-revolute systems: composites locally, products in common
+ * axes.
  *
- * Composite inertias and F_i = I^c z stay in body axes, where they are accurate. Then F_i, taken to the base's axes and
- * to a common origin (that of body 0), meets all ancestors' axes S_j = [z; o x z] without any further transform:
- * 11 flops a pair, in packed registers for a chain. */
+ * Composite inertias and F_i = I^c z stay in body axes, where they are accurate. Then F_i, taken to
+ * the base's axes and to a common origin (that of body 0), meets all ancestors' axes S_j = [z; o x
+ * z] without any further transform: 11 flops a pair, in packed registers for a chain. */
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 
@@ -72,11 +73,13 @@ static void chain_row(const struct axes *a, int i, const real *n, const real *f,
 {
     const real *x = a->s[0], *y = a->s[1], *z = a->s[2], *u = a->s[3], *v = a->s[4], *w = a->s[5];
     const real n0 = n[0], n1 = n[1], n2 = n[2], f0 = f[0], f1 = f[1], f2 = f[2];
-    for (int j = 0; j < i; j++) row[j] = (n0 * x[j] + n1 * y[j] + n2 * z[j]) + (f0 * u[j] + f1 * v[j] + f2 * w[j]);
+    for (int j = 0; j < i; j++)
+        row[j] = (n0 * x[j] + n1 * y[j] + n2 * z[j]) + (f0 * u[j] + f1 * v[j] + f2 * w[j]);
 }
 
 /* Entries on the path to the root, both triangles. */
-static void tree_row(const struct dynamics *d, const struct axes *a, int i, const real *n, const real *f, real *mass)
+static void tree_row(const struct dynamics *d, const struct axes *a, int i, const real *n,
+                     const real *f, real *mass)
 {
     /* Ancestors of a tree's body are anywhere. */
     size_t size = (size_t)a->n;
@@ -95,8 +98,8 @@ static void mirror(int n, real *mass)
     for (int i0 = 0; i0 < n; i0 += TILE) {
         int end = i0 + TILE < n ? i0 + TILE : n;
         for (int j = 0; j < end - 1; j++)
-            for (int i = i0 > j ? i0 : j + 1; i < end; i++) mass[(size_t)j * (size_t)n + (size_t)i] =
-                mass[(size_t)i * (size_t)n + (size_t)j];
+            for (int i = i0 > j ? i0 : j + 1; i < end; i++)
+                mass[(size_t)j * (size_t)n + (size_t)i] = mass[(size_t)i * (size_t)n + (size_t)j];
     }
 }
 

@@ -1,7 +1,7 @@
 /* dynamics_table.h - the serial algorithms behind one table per precision, double in and out.
  *
- * This is the door for whoever does not compute in `real`: run (references of a simulated answer), app (verify),
- * report (accuracy). Answers are rounded to double at the very end. */
+ * This is the door for whoever does not compute in `real`: run (references of a simulated answer),
+ * app (verify), report (accuracy). Answers are rounded to double at the very end. */
 #ifndef DYNAMICS_DYNAMICS_TABLE_H
 #define DYNAMICS_DYNAMICS_TABLE_H
 
@@ -14,12 +14,18 @@
 
 /* The serial ways from joint forces to accelerations. */
 enum forward_method {
-    FORWARD_ABA, FORWARD_CRBA, FORWARD_CRBA_SPARSE, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT,
-    FORWARD_CFA_ROBUST,          /* direct, inner and outer refinement; articulated bodies where that fails */
+    FORWARD_ABA,
+    FORWARD_CRBA,
+    FORWARD_CRBA_SPARSE,
+    FORWARD_CFA_PAPER,
+    FORWARD_CFA_DIRECT,
+    FORWARD_CFA_ROBUST, /* direct, inner and outer refinement; articulated bodies where that fails
+                         */
     FORWARD_METHODS
 };
 
-/* Loops are closed by every method: cfa-* by the bordered system, the others by columns of M^-1 J^T. */
+/* Loops are closed by every method: cfa-* by the bordered system, the others by columns of M^-1
+ * J^T. */
 struct forward_report {
     double residual;             /* see cfa_report */
     int rank, nrow;
@@ -38,35 +44,41 @@ struct dynamics_type {
     double epsilon;
 
     /* inverse: tau (nu) for s->qdd, loops cut open: what actuators and springs do together. */
-    void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w);
+    void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch,
+                    double *tau, struct work *w);
 
-    /* forward: qdd (nu) for s->tau plus springs; lambda (nrow) and report may be NULL. False: the method broke down
-     * (singular pivot) or does not apply (constraint forces with massless bodies). */
-    bool (*forward)(const struct model *m, const struct state *s, enum forward_method method, struct arena *scratch,
-                    double *qdd, double *lambda, struct forward_report *report, struct work *w);
+    /* forward: qdd (nu) for s->tau plus springs; lambda (nrow) and report may be NULL. False: the
+     * method broke down (singular pivot) or does not apply (constraint forces with massless
+     * bodies). */
+    bool (*forward)(const struct model *m, const struct state *s, enum forward_method method,
+                    struct arena *scratch, double *qdd, double *lambda,
+                    struct forward_report *report, struct work *w);
 
     /* mass_matrix: (nu x nu) row-major at s->q. */
-    void (*mass_matrix)(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
-                        struct work *w);
+    void (*mass_matrix)(const struct model *m, const struct state *s, struct arena *scratch,
+                        double *mass, struct work *w);
 
-    /* wrenches: (nbody x 6) [force; moment] that each joint transmits to its body from the parent when inverse dynamics
-     * gives s->qdd: user's body axes, about the body's origin. */
-    void (*wrenches)(const struct model *m, const struct state *s, struct arena *scratch, double *wrench);
+    /* wrenches: (nbody x 6) [force; moment] that each joint transmits to its body from the parent
+     * when inverse dynamics gives s->qdd: user's body axes, about the body's origin. */
+    void (*wrenches)(const struct model *m, const struct state *s, struct arena *scratch,
+                     double *wrench);
 
-    /* kinematics: (nbody x POSE_NUMBERS) of each body, world axes: rotation (9) to world, position, velocity, angular
-     * velocity, acceleration (without gravity), angular acceleration (3 each). */
-    void (*kinematics)(const struct model *m, const struct state *s, struct arena *scratch, double *pose);
+    /* kinematics: (nbody x POSE_NUMBERS) of each body, world axes: rotation (9) to world, position,
+     * velocity, angular velocity, acceleration (without gravity), angular acceleration (3 each). */
+    void (*kinematics)(const struct model *m, const struct state *s, struct arena *scratch,
+                       double *pose);
 
     /* totals: energy (springs included), momentum, centre of mass. */
-    void (*totals)(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t);
+    void (*totals)(const struct model *m, const struct state *s, struct arena *scratch,
+                   struct dynamics_totals *t);
 
     /* advance: move s->q, s->qd by `steps` fixed steps of h; false when the dynamics broke down. */
-    bool (*advance)(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
-                    struct arena *scratch, struct work *w);
+    bool (*advance)(const struct model *m, struct state *s, enum step_rule rule, double h,
+                    int steps, struct arena *scratch, struct work *w);
 
     /* drift: largest violation of the loops' position and velocity constraints. */
-    void (*drift)(const struct model *m, const struct state *s, struct arena *scratch, double *position,
-                  double *velocity);
+    void (*drift)(const struct model *m, const struct state *s, struct arena *scratch,
+                  double *position, double *velocity);
 };
 
 /* dynamics_type_of: the table of a precision. */

@@ -20,7 +20,8 @@ static real *to_real(struct arena *a, const double *x, int n)
 }
 
 /* Work arrays, loads and inputs of one call; the caller's mark gives them back. */
-static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a, struct work *w)
+static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a,
+                                   struct work *w)
 {
     struct problem p = {.d = dynamics_take(m, a)};
     dynamics_load(p.d, s);
@@ -40,7 +41,8 @@ static void to_double(double *y, const real *x, int n)
 }
 
 /* Physics (2.1) to (2.5). */
-static void inverse(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w)
+static void inverse(const struct model *m, const struct state *s, struct arena *scratch,
+                    double *tau, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
@@ -53,12 +55,13 @@ static void inverse(const struct model *m, const struct state *s, struct arena *
 }
 
 /* Which algorithm; all of them answer the same question. */
-static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda, struct cfa_report *report,
-                  struct work *w)
+static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda,
+                  struct cfa_report *report, struct work *w)
 {
     struct dynamics *d = p->d;
     /* It chooses among the others itself. */
-    if (method == FORWARD_CFA_ROBUST) return forward_robust(d, p->q, p->u, p->tau, ud, lambda, report, w);
+    if (method == FORWARD_CFA_ROBUST)
+        return forward_robust(d, p->q, p->u, p->tau, ud, lambda, report, w);
     if (method == FORWARD_CFA_PAPER || method == FORWARD_CFA_DIRECT) {
         const struct cfa_options options = {.direct = method == FORWARD_CFA_DIRECT};
         return cfa(d, p->q, p->u, p->tau, &options, ud, lambda, report, w);
@@ -70,8 +73,9 @@ static bool solve(struct problem *p, enum forward_method method, real *ud, real 
 }
 
 /* Springs are given forces here: the state's tau is what drives act with. */
-static bool forward(const struct model *m, const struct state *s, enum forward_method method, struct arena *scratch,
-                    double *qdd, double *lambda, struct forward_report *report, struct work *w)
+static bool forward(const struct model *m, const struct state *s, enum forward_method method,
+                    struct arena *scratch, double *qdd, double *lambda,
+                    struct forward_report *report, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
@@ -86,14 +90,16 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     if (good && lambda) to_double(lambda, force, m->nrow);
     /* The robust method refines inside and outside; users want to know how often in all. */
     const int refined = full.inner_done + full.outer_done;
-    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, refined, full.fell_back};
+    if (report)
+        *report =
+            (struct forward_report){full.residual, full.rank, full.nrow, refined, full.fell_back};
     arena_release(scratch, mark);
     return good;
 }
 
 /* Full and symmetric, (nu x nu), for references. */
-static void mass_matrix(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
-                        struct work *w)
+static void mass_matrix(const struct model *m, const struct state *s, struct arena *scratch,
+                        double *mass, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
@@ -103,8 +109,10 @@ static void mass_matrix(const struct model *m, const struct state *s, struct are
     arena_release(scratch, mark);
 }
 
-/* The joint forces that RNEA leaves behind, from internal [moment; force] to the user's [force; moment]. */
-static void wrenches(const struct model *m, const struct state *s, struct arena *scratch, double *wrench)
+/* The joint forces that RNEA leaves behind, from internal [moment; force] to the user's [force;
+ * moment]. */
+static void wrenches(const struct model *m, const struct state *s, struct arena *scratch,
+                     double *wrench)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);
@@ -113,7 +121,8 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
     rnea_full(p.d, p.q, p.u, p.ud, tau, NULL);
     for (int i = 0; i < m->nbody; i++)
         for (int k = 0; k < 3; k++) {
-            const real *turn = p.d->body[i].user + 3 * k, *moment = p.d->f + 6 * i, *force = moment + 3;
+            const real *turn = p.d->body[i].user + 3 * k, *moment = p.d->f + 6 * i,
+                       *force = moment + 3;
             wrench[6 * i + k] = (double)vec3_dot(turn, force);
             wrench[6 * i + 3 + k] = (double)vec3_dot(turn, moment);
         }
@@ -121,7 +130,8 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
 }
 
 /* Poses, velocities and accelerations of all bodies in the base's frame. */
-static void kinematics(const struct model *m, const struct state *s, struct arena *scratch, double *pose)
+static void kinematics(const struct model *m, const struct state *s, struct arena *scratch,
+                       double *pose)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);
@@ -141,7 +151,8 @@ static void kinematics(const struct model *m, const struct state *s, struct aren
 }
 
 /* Conserved quantities, for the laws that tests and studies check. */
-static void totals(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t)
+static void totals(const struct model *m, const struct state *s, struct arena *scratch,
+                   struct dynamics_totals *t)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);
@@ -157,8 +168,8 @@ static void totals(const struct model *m, const struct state *s, struct arena *s
 }
 
 /* Time steps of a whole system; the state is overwritten. */
-static bool advance(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
-                    struct arena *scratch, struct work *w)
+static bool advance(const struct model *m, struct state *s, enum step_rule rule, double h,
+                    int steps, struct arena *scratch, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
@@ -175,8 +186,8 @@ static bool advance(const struct model *m, struct state *s, enum step_rule rule,
 }
 
 /* How far loops have drifted apart: largest position and velocity error. */
-static void drift(const struct model *m, const struct state *s, struct arena *scratch, double *position,
-                  double *velocity)
+static void drift(const struct model *m, const struct state *s, struct arena *scratch,
+                  double *position, double *velocity)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);

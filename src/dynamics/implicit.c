@@ -1,7 +1,8 @@
-/* implicit.c - accelerations under linearly implicit joint springs, (M + s) u' = tau_0 - xi, physics (9.0).
+/* implicit.c - accelerations under linearly implicit joint springs, (M + s) u' = tau_0 - xi,
+ * physics (9.0).
  *
- * Articulated bodies with the resistance s in the pivot of each joint. What a joint passes on keeps a part along H,
- * unlike in aba.c: with Y = (H^T I H + s)^-1 (I H)^T, I^a = I - I H Y. */
+ * Articulated bodies with the resistance s in the pivot of each joint. What a joint passes on keeps
+ * a part along H, unlike in aba.c: with Y = (H^T I H + s)^-1 (I H)^T, I^a = I - I H Y. */
 #include "dynamics/dynamics.h"
 #include "dynamics/integrate.h"
 #include "dynamics/work_count.h"
@@ -29,8 +30,9 @@ static void lower(struct sym6 *inertia, const real *u, const real *y)
 }
 
 /* Eliminate the joint of b; ia, pa: what its parent gets, body axes. */
-static bool eliminate(const struct subspace *s, const real *bias, const real *tau, const real *resistance,
-                      struct resisting *b, struct sym6 *ia, real *pa, struct work *w)
+static bool eliminate(const struct subspace *s, const real *bias, const real *tau,
+                      const real *resistance, struct resisting *b, struct sym6 *ia, real *pa,
+                      struct work *w)
 {
     real h[36], u[36], g[21], t[6];
     struct work small = {0}; /* its calls are part of the body's one */
@@ -65,7 +67,8 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
 }
 
 /* (2.7): with Y and x kept, u' is one dot product a freedom. */
-static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud, struct work *w)
+static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud,
+                       struct work *w)
 {
     const struct subspace *s = &d->pose[i].s;
     const int parent = d->body[i].parent;
@@ -74,12 +77,13 @@ static void accelerate(struct dynamics *d, int i, const struct resisting *b, rea
     screw_add(a, d->bias + 6 * i);
     for (int k = 0; k < s->d; k++) ud[k] = b->x[k] - screw_dot(b->y + 6 * k, a);
     subspace_h(s, ud, a);
-    w->flop += (uint64_t)(XFORM_MOTION_FLOP + SCREW_ADD_FLOP + s->d * (SCREW_DOT_FLOP + 1) + body_cost(&d->body[i])->h);
+    w->flop += (uint64_t)(XFORM_MOTION_FLOP + SCREW_ADD_FLOP + s->d * (SCREW_DOT_FLOP + 1) +
+                          body_cost(&d->body[i])->h);
 }
 
 /* As aba_full, with a resistance in the pivots of sprung joints. */
-bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
-                      struct work *w)
+bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau,
+                      real *ud, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     struct resisting *b = TAKE(d->arena, d->nbody, struct resisting);
@@ -112,8 +116,8 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;
         real pa[6];
-        good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at, resistance + body->u_at, &b[i], &ia, pa,
-                         &own);
+        good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at,
+                         resistance + body->u_at, &b[i], &ia, pa, &own);
         if (!good || body->parent < 0) continue;
         /* Handed to the parent as in aba.c. */
         sym6_move(&moved, &d->pose[i].x, &ia);

@@ -5,7 +5,8 @@
 #include "dynamics/work_count.h"
 
 /* Forces that users give, springs on top. */
-bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+                      struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     real *sum = TAKE(d->arena, d->nu, real);
@@ -13,13 +14,15 @@ bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const re
     /* Spring forces at the present state: explicit, however stiff. */
     springs_add(d, q, u, sum);
     work_count_springs(d, w);
-    bool good = d->model->nloop > 0 ? closed_forward(d, q, u, sum, ud, NULL, NULL, w) : aba(d, q, u, sum, ud, w);
+    bool good = d->model->nloop > 0 ? closed_forward(d, q, u, sum, ud, NULL, NULL, w)
+                                    : aba(d, q, u, sum, ud, w);
     arena_release(d->arena, mark);
     return good;
 }
 
 /* The accelerations persist between steps: kick-drift-kick begins where it ended. */
-struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real h, real *q, real *u, const real *tau)
+struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real h, real *q, real *u,
+                                  const real *tau)
 {
     return (struct integrator){.d = d, .rule = rule, .h = h, .q = q, .u = u, .tau = tau,
                                .a = TAKE(d->arena, d->nu, real)};
@@ -64,7 +67,8 @@ static bool step_linearly_implicit(struct integrator *it)
 {
     it->evaluations++;
     /* The linearised spring is in the tree's sweeps; loops have no such form here. */
-    if (it->d->model->nloop > 0 || !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
+    if (it->d->model->nloop > 0 ||
+        !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
         return false;
     combine(it, it->d->nu, it->u, it->h, it->a, it->u);
     drift(it);

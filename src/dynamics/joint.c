@@ -1,6 +1,8 @@
-/* joint.c - motion of a body by its joint's type: transform, subspace, bias, a step along the group (physics 1.3).
+/* joint.c - motion of a body by its joint's type: transform, subspace, bias, a step along the group
+ * (physics 1.3).
  *
- * What the types do differently stands in their own files (joint_motion.h); here is what is common. */
+ * What the types do differently stands in their own files (joint_motion.h); here is what is
+ * common. */
 #include "dynamics/body.h"
 
 #include "dynamics/joint_motion.h"
@@ -44,8 +46,8 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
     motion_of[b->joint]->place(b, q, pose);
 }
 
-void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
-               real *bias)
+void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h,
+               const real *u, real *bias)
 {
     const struct joint_motion *motion = motion_of[b->joint];
     real w[3], p[3], t[3];

@@ -1,4 +1,5 @@
-/* joint_floating.c - floating bodies: any displacement and any turn. H has the linear columns first, as u does. */
+/* joint_floating.c - floating bodies: any displacement and any turn. H has the linear columns
+ * first, as u does. */
 #include "dynamics/joint_motion.h"
 
 /* r = E R(quaternion), p = t + E (x, y, z). */

@@ -1,7 +1,8 @@
 /* joint_helical.c - helical joints: a turn about z that advances along it by `pitch` per radian. */
 #include "dynamics/joint_motion.h"
 
-/* H = unit [z; pitch z]; W = unit [-pitch z; z], then the four others: constant, but no unit vectors. */
+/* H = unit [z; pitch z]; W = unit [-pitch z; z], then the four others: constant, but no unit
+ * vectors. */
 static void subspace(const struct body *b, const real *q, struct subspace *s)
 {
     static const signed char others[4] = {0, 1, 3, 4};

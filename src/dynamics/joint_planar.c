@@ -1,4 +1,5 @@
-/* joint_planar.c - planar joints: displacements in the plane z = 0 of the joint frame, and a turn about z. */
+/* joint_planar.c - planar joints: displacements in the plane z = 0 of the joint frame, and a turn
+ * about z. */
 #include "dynamics/joint_motion.h"
 
 /* r = E Rz(q1), p = t + E (q2, q3, 0). */
@@ -29,8 +30,8 @@ static void step(const struct body *b, real *q, const real *u, real h)
     q[0] += half * u[0];
 }
 
-/* H = [z; 0], [0; x], [0; y] in body axes. qdot: the rotation of two numbers, 6 flops; step: that, half the step, 2
- * for each displacement and each half-turn. */
+/* H = [z; 0], [0; x], [0; y] in body axes. qdot: the rotation of two numbers, 6 flops; step: that,
+ * half the step, 2 for each displacement and each half-turn. */
 const struct joint_motion JOINT_DEFINE(planar) = {
     .pick = {2, 3, 4, 0, 1, 5},
     .slides = true,

@@ -1,5 +1,5 @@
-/* joint_revolute.c - revolute joints: a turn about z. Systems of these alone have fast paths of their own (revolute.h).
- */
+/* joint_revolute.c - revolute joints: a turn about z. Systems of these alone have fast paths of
+ * their own (revolute.h). */
 #include "dynamics/joint_motion.h"
 
 /* r = E Rz(q), p = t. */
@@ -9,7 +9,8 @@ static void place(const struct body *b, const real *q, struct body_pose *pose)
     vec3_copy(pose->x.p, b->tree.p);
 }
 
-/* H = [z; 0]; v_J = 0 at the axis, where the body's origin lies, so that the bias has no terms of sliding. */
+/* H = [z; 0]; v_J = 0 at the axis, where the body's origin lies, so that the bias has no terms of
+ * sliding. */
 const struct joint_motion JOINT_DEFINE(revolute) = {
     .pick = {2, 0, 1, 3, 4, 5},
     .place = place,

@@ -1,8 +1,9 @@
-/* joint_slot.c - a ball in a slot and a ball on a plane: any turn, and displacements along one or two directions that
- * are fixed in the joint frame (body.slide). */
+/* joint_slot.c - a ball in a slot and a ball on a plane: any turn, and displacements along one or
+ * two directions that are fixed in the joint frame (body.slide). */
 #include "dynamics/joint_motion.h"
 
-/* Displacement in the joint frame along the free directions by x (d - 3); SLIDE flops along one, SLIDES along two. */
+/* Displacement in the joint frame along the free directions by x (d - 3); SLIDE flops along one,
+ * SLIDES along two. */
 enum { SLIDE = 3, SLIDES = 9 };
 static void slide_by(const struct body *b, const real *x, real *d)
 {
@@ -66,18 +67,19 @@ static void step(const struct body *b, real *q, const real *u, real h)
     for (int i = 3; i < b->d; i++) q[1 + i] += h * u[i];
 }
 
-/* H = [U; 0], [0; R^T x] with one free direction or two (physics 1.3); `d` degrees of freedom, of which `free` are
- * displacements, at `slide` flops. */
-#define SLIDING_BALL(d, free, slide)                                                                                   \
-    {                                                                                                                  \
-        .slides = true, .subspace = subspace, .place = place, .kappa = kappa, .qdot = qdot, .step = step,              \
-        .cost = {.subspace = {.flop = QUATERNION + COLUMNS, .div = 1},                                                 \
-                 .place = QUATERNION_PLACE + (slide) + SHIFT + COLUMNS,                                                \
-                 .place_div = 1,                                                                                       \
-                 .rate = 12 * (d),                                                                                     \
-                 .bias = BIAS + SLIDING + VEC3_CROSS_ADD_FLOP,                                                         \
-                 QUATERNION_STEPS(free),                                                                               \
-                 DENSE(d)},                                                                                            \
+/* H = [U; 0], [0; R^T x] with one free direction or two (physics 1.3); `d` degrees of freedom, of
+ * which `free` are displacements, at `slide` flops. */
+#define SLIDING_BALL(d, free, slide)                                                               \
+    {                                                                                              \
+        .slides = true, .subspace = subspace, .place = place, .kappa = kappa, .qdot = qdot,        \
+        .step = step,                                                                              \
+        .cost = {.subspace = {.flop = QUATERNION + COLUMNS, .div = 1},                             \
+                 .place = QUATERNION_PLACE + (slide) + SHIFT + COLUMNS,                            \
+                 .place_div = 1,                                                                   \
+                 .rate = 12 * (d),                                                                 \
+                 .bias = BIAS + SLIDING + VEC3_CROSS_ADD_FLOP,                                     \
+                 QUATERNION_STEPS(free),                                                           \
+                 DENSE(d)},                                                                        \
     }
 const struct joint_motion JOINT_DEFINE(slot) = SLIDING_BALL(4, 1, SLIDE);
 const struct joint_motion JOINT_DEFINE(point_plane) = SLIDING_BALL(5, 2, SLIDES);

@@ -1,4 +1,5 @@
-/* joint_universal.c - universal joints: turns about x, fixed in the joint frame, and about y, fixed in the body. */
+/* joint_universal.c - universal joints: turns about x, fixed in the joint frame, and about y, fixed
+ * in the body. */
 #include "dynamics/joint_motion.h"
 
 /* H = [(cos b, 0, sin b); 0], [y; 0]; W = [(-sin b, 0, cos b); 0], [0; U]. b: the second angle. */
@@ -30,7 +31,8 @@ static void place(const struct body *b, const real *q, struct body_pose *pose)
     angle_sincos(q[1], &sb, &cb);
     /* row by row: the turn about x mixes y and z, the turn about y then x and z */
     for (int i = 0; i < 3; i++) {
-        real x = e[3 * i], y = ca * e[3 * i + 1] + sa * e[3 * i + 2], z = ca * e[3 * i + 2] - sa * e[3 * i + 1];
+        real x = e[3 * i], y = ca * e[3 * i + 1] + sa * e[3 * i + 2],
+             z = ca * e[3 * i + 2] - sa * e[3 * i + 1];
         r[3 * i] = cb * x - sb * z;
         r[3 * i + 1] = y;
         r[3 * i + 2] = cb * z + sb * x;

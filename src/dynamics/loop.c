@@ -73,7 +73,8 @@ static void joint_columns(const struct loop *l, const real *r, struct loop_pose 
     /* The constrained directions lie in frame a: columns of W are rows of r. */
     if (moves_with_a(l)) {
         for (int k = 0; k < l->c; k++)
-            for (int j = 0; j < 3; j++) p->w[6 * k + j] = 0, p->w[6 * k + 3 + j] = r[3 * (3 - l->c + k) + j];
+            for (int j = 0; j < 3; j++)
+                p->w[6 * k + j] = 0, p->w[6 * k + 3 + j] = r[3 * (3 - l->c + k) + j];
         return;
     }
     body_subspace(&free, NULL, &s);
@@ -82,7 +83,8 @@ static void joint_columns(const struct loop *l, const real *r, struct loop_pose 
 
 /* Common end: projections of position error (6) and relative velocity (6); flops a constraint. */
 enum { PROJECT_FLOP = 2 * SCREW_DOT_FLOP + 5 };
-static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
+static void project(const struct loop *l, const real *error, const real *relative,
+                    struct loop_pose *p)
 {
     for (int k = 0; k < l->c; k++) {
         /* Position and velocity of the constraint, and Baumgarte's terms for both (7.2). */
@@ -92,13 +94,15 @@ static void project(const struct loop *l, const real *error, const real *relativ
     }
 }
 
-/* Axes of frame a; each body's own point. gamma is the difference of the points' centripetal accelerations. */
+/* Axes of frame a; each body's own point. gamma is the difference of the points' centripetal
+ * accelerations. */
 enum {
-    PLACE_ROWS_FLOP = 2 * XFORM_COMPOSE_FLOP + MAT3_MUL_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
-                      2 * CENTRIPETAL_FLOP + 2 * MAT3_VEC_FLOP + 3 + BETWEEN_FLOP + SMALL_ANGLE_FLOP
+    PLACE_ROWS_FLOP = 2 * XFORM_COMPOSE_FLOP + MAT3_MUL_FLOP + 2 * XFORM_MOTION_FLOP +
+                      SCREW_ADD_FLOP + 2 * CENTRIPETAL_FLOP + 2 * MAT3_VEC_FLOP + 3 + BETWEEN_FLOP +
+                      SMALL_ANGLE_FLOP
 };
-static void place_rows(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
-                       const real *vb, struct loop_pose *p)
+static void place_rows(const struct loop *l, const struct xform *xa, const struct xform *xb,
+                       const real *va, const real *vb, struct loop_pose *p)
 {
     struct xform wa, wb, rel;
     real a[6], b[6], error[6], relative[6];
@@ -131,12 +135,13 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
 
 /* Frame b throughout: physics (7.1)-(7.3). A joint whose W moves with b adds one vector more. */
 enum {
-    PLACE_JOINT_FLOP = 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
-                       2 * MAT3_VEC_FLOP + VEC3_CROSS_FLOP + 2 * CENTRIPETAL_FLOP + VEC3_ADD_FLOP + 3 +
-                       VEC3_CROSS_ADD_FLOP + SMALL_ANGLE_FLOP + 2 * MAT3_VEC_FLOP
+    PLACE_JOINT_FLOP = 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP +
+                       SCREW_ADD_FLOP + 2 * MAT3_VEC_FLOP + VEC3_CROSS_FLOP + 2 * CENTRIPETAL_FLOP +
+                       VEC3_ADD_FLOP + 3 + VEC3_CROSS_ADD_FLOP + SMALL_ANGLE_FLOP +
+                       2 * MAT3_VEC_FLOP
 };
-static void place_joint(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
-                        const real *vb, struct loop_pose *p)
+static void place_joint(const struct loop *l, const struct xform *xa, const struct xform *xb,
+                        const real *va, const real *vb, struct loop_pose *p)
 {
     struct xform wa, wb, rel;
     real a[6], b[6], relative[6], error[6], angle[3], pa[3], pb[3], t[3];
@@ -172,8 +177,8 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
 }
 
 /* Rows of a file are given in frame a, joints in frame b. */
-void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
-                struct loop_pose *p)
+void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb,
+                const real *va, const real *vb, struct loop_pose *p)
 {
     p->c = l->c;
     if (l->by_rows)

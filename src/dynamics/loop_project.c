@@ -5,7 +5,8 @@
 #include "linalg/least_norm.h"
 
 /* delta (nu) = - M^-1 J^T S^+ x with x = g (position) or rho (velocity) at (q, u). */
-static bool correction(struct dynamics *d, const real *q, const real *u, bool position, real *delta, struct work *w)
+static bool correction(struct dynamics *d, const real *q, const real *u, bool position, real *delta,
+                       struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     int m = d->model->nrow, n = d->nu;
@@ -16,7 +17,8 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     work_count_place(d, w);
     work_count_velocities(d, w);
     loops_take(d, &l, w);
-    real *response = TAKE(d->arena, size_product(m, n), real), *s = TAKE(d->arena, size_product(m, m), real);
+    real *response = TAKE(d->arena, size_product(m, n), real),
+         *s = TAKE(d->arena, size_product(m, m), real);
     real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
     /* S and M^-1 J^T come from the same responses; M itself is never formed. */

@@ -28,7 +28,8 @@ void loops_take(struct dynamics *d, struct loops *l, struct work *w)
 /* What loop_force executes. */
 static int force_flops(const struct loop *l)
 {
-    return SCREW_AXPY_FLOP * l->c + ((l->body_a >= 0) + (l->body_b >= 0)) * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
+    return SCREW_AXPY_FLOP * l->c +
+           ((l->body_a >= 0) + (l->body_b >= 0)) * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
 }
 
 /* On a loop's two bodies alone; the base takes any force. */
@@ -36,7 +37,8 @@ void loops_force(const struct loops *l, const real *lambda, real *f, struct work
 {
     for (int k = 0; k < l->nloop; k++) {
         int a = l->loop[k].body_a, b = l->loop[k].body_b;
-        loop_force(&l->pose[k], lambda + l->loop[k].row_at, a < 0 ? NULL : f + 6 * a, b < 0 ? NULL : f + 6 * b);
+        loop_force(&l->pose[k], lambda + l->loop[k].row_at, a < 0 ? NULL : f + 6 * a,
+                   b < 0 ? NULL : f + 6 * b);
         w->flop += (uint64_t)force_flops(&l->loop[k]);
     }
 }
@@ -55,8 +57,8 @@ void loops_column(const struct loops *l, int k, real *f, struct work *w)
 }
 
 /* Zero when the loops hold at these accelerations. */
-void loops_residual(const struct loops *l, const real *a, const real *base, bool homogeneous, real *r,
-                    struct work *w)
+void loops_residual(const struct loops *l, const real *a, const real *base, bool homogeneous,
+                    real *r, struct work *w)
 {
     static const real still[6] = {0};
     if (!base) base = still;
@@ -68,7 +70,8 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
             screw_zero(p.gamma);
             screw_zero(p.stabilise);
         }
-        loop_residual(&p, ba < 0 ? base : a + 6 * ba, bb < 0 ? base : a + 6 * bb, r + l->loop[k].row_at);
+        loop_residual(&p, ba < 0 ? base : a + 6 * ba, bb < 0 ? base : a + 6 * bb,
+                      r + l->loop[k].row_at);
         w->flop += (uint64_t)(LOOP_RESIDUAL_FLOP + (SCREW_DOT_FLOP + 1) * p.c);
     }
 }
@@ -95,7 +98,8 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
 }
 
 /* What S's rounding is measured by (physics 7.7). */
-void loops_reference(const struct dynamics *d, const struct loops *l, real *reference, struct work *w)
+void loops_reference(const struct dynamics *d, const struct loops *l, real *reference,
+                     struct work *w)
 {
     for (int k = 0; k < l->nloop; k++) {
         const struct loop *loop = &l->loop[k];
@@ -103,7 +107,8 @@ void loops_reference(const struct dynamics *d, const struct loops *l, real *refe
         loop_column(&l->pose[k], false, a);
         loop_column(&l->pose[k], true, b);
         for (int i = 0; i < loop->c; i++) {
-            real sum = side_reference(d, loop->body_a, a + 6 * i, w) + side_reference(d, loop->body_b, b + 6 * i, w);
+            real sum = side_reference(d, loop->body_a, a + 6 * i, w) +
+                       side_reference(d, loop->body_b, b + 6 * i, w);
             /* A loop between massless bodies has no scale of its own. */
             reference[loop->row_at + i] = sum > 0 ? sum : 1;
         }
@@ -111,8 +116,8 @@ void loops_reference(const struct dynamics *d, const struct loops *l, real *refe
     }
 }
 
-bool loops_respond(struct dynamics *d, const struct loops *l, real *response, size_t stride, real *s,
-                   struct work *w)
+bool loops_respond(struct dynamics *d, const struct loops *l, real *response, size_t stride,
+                   real *s, struct work *w)
 {
     const int m = l->nrow;
     struct arena_mark mark = arena_mark(d->arena);

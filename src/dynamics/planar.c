@@ -39,8 +39,8 @@ static bool turns(enum model_joint joint)
 
 static bool slides(enum model_joint joint) { return joint_plane(joint) == PLANE_SLIDES; }
 
-/* The first axis of a turn; or orthogonal to the first two slides that are not parallel; or to the only one there is.
- */
+/* The first axis of a turn; or orthogonal to the first two slides that are not parallel; or to the
+ * only one there is. */
 static void first_normal(const struct model *m, quad *n)
 {
     quad slide[3], other[3];
@@ -76,7 +76,8 @@ static bool same(const struct model *m, int i, int j, const quad *normal)
     const struct body_def *a = &m->body[i], *b = &m->body[j];
     return a->joint == b->joint && memcmp(a->axis, b->axis, sizeof a->axis) == 0 &&
            memcmp(a->placement.quat, b->placement.quat, sizeof a->placement.quat) == 0 &&
-           memcmp(normal + 3 * (a->parent + 1), normal + 3 * (b->parent + 1), 3 * sizeof *normal) == 0;
+           memcmp(normal + 3 * (a->parent + 1), normal + 3 * (b->parent + 1), 3 * sizeof *normal) ==
+               0;
 }
 
 /* The joint's own axis is the normal from here on, so that no tilt adds up. False: it is not. */
@@ -115,14 +116,15 @@ quad *planar_normals(const struct model *m, quad tolerance, struct arena *a, str
         mat3_mul_vec_transposed(n, r, normal + 3 * (b->parent + 1));
         if (settle(b, tolerance, n)) continue;
         /* The first body that leaves the plane is named. */
-        err_set(e, ERR_CONFIG, "the scene is not planar: the %s joint of '%s' leaves the plane", joint_name(b->joint),
-                b->name);
+        err_set(e, ERR_CONFIG, "the scene is not planar: the %s joint of '%s' leaves the plane",
+                joint_name(b->joint), b->name);
         return NULL;
     }
     return normal;
 }
 
-/* Whether the two frames of every loop see the same normal, and its constraints are rows or stay unit vectors. */
+/* Whether the two frames of every loop see the same normal, and its constraints are rows or stay
+ * unit vectors. */
 static bool planar_loops(const struct model *m, const quad *normal, quad tolerance, struct err *e)
 {
     for (int l = 0; l < m->nloop; l++) {
@@ -134,16 +136,19 @@ static bool planar_loops(const struct model *m, const quad *normal, quad toleran
         vec3_sub(a, b);
         const bool known = def->nrow > 0 || planar_loop_direction(def->joint, 0) >= 0;
         if (!known || !(vec3_norm(a) <= tolerance))
-            return err_set(e, ERR_CONFIG, "the scene is not planar: loop '%s' leaves the plane", def->name);
+            return err_set(e, ERR_CONFIG, "the scene is not planar: loop '%s' leaves the plane",
+                           def->name);
     }
     return true;
 }
 
 /* Bodies, then loops, then the base's own motion. */
-bool planar_scene(const struct model *m, const struct state *s, enum precision precision, struct err *e)
+bool planar_scene(const struct model *m, const struct state *s, enum precision precision,
+                  struct err *e)
 {
     struct arena *scratch = arena_create();
-    const quad tolerance = tolerance_of(precision), *normal = planar_normals(m, tolerance, scratch, e);
+    const quad tolerance = tolerance_of(precision),
+               *normal = planar_normals(m, tolerance, scratch, e);
     bool planar = normal && planar_loops(m, normal, tolerance, e);
     /* A base that turns about any other direction tilts the plane. */
     if (planar && s) {
@@ -151,7 +156,8 @@ bool planar_scene(const struct model *m, const struct state *s, enum precision p
         for (int i = 0; i < 3; i++) turn[i] = s->base_acceleration[i];
         vec3_cross(out, turn, normal);
         planar = vec3_norm(out) <= tolerance * vec3_norm(turn);
-        if (!planar) err_set(e, ERR_CONFIG, "the scene is not planar: its base rotates out of the plane");
+        if (!planar)
+            err_set(e, ERR_CONFIG, "the scene is not planar: its base rotates out of the plane");
     }
     arena_destroy(scratch);
     return planar;
@@ -182,7 +188,8 @@ void planar_placement(const quad *outer, const quad *inner, const struct frame *
     frame_constants_make(NULL, -1, f, r, p);
     /* The angle between the two x axes; their normals agree to the tolerance. */
     mat3_mul_vec(axis, r, inner + 3);
-    const quad c = vec3_dot(outer + 3, axis), s = vec3_dot(outer + 6, axis), length = sqrtq(c * c + s * s);
+    const quad c = vec3_dot(outer + 3, axis), s = vec3_dot(outer + 6, axis),
+               length = sqrtq(c * c + s * s);
     /* A tilt within the tolerance shortens the projection: made unit again. */
     x[0] = c / length, x[1] = s / length;
     /* The shift along the normal is lost on purpose: nothing in the plane depends on it. */

@@ -20,7 +20,9 @@ static void make_frames(const struct model *m, int i, const quad *normal, struct
     for (int k = 0; k < 9; k++) b->frame[k] = (real)own[k];
     /* An axis against the normal turns the other way round. */
     for (int k = 0; k < 3; k++) along += def->axis[k] * own[k];
-    b->flipped = (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) && along < 0;
+    b->flipped =
+        (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) &&
+        along < 0;
     body_springs(m, i, b);
 }
 
@@ -60,7 +62,8 @@ static bool same_frame(const struct model *m, int i, int j, const quad *normal)
 /* Whether bodies i and j are the same in all but their places in the model. */
 static bool alike(const struct model *m, int i, int j, const quad *normal)
 {
-    return same_frame(m, i, j, normal) && same_frame(m, m->body[i].parent, m->body[j].parent, normal) &&
+    return same_frame(m, i, j, normal) &&
+           same_frame(m, m->body[i].parent, m->body[j].parent, normal) &&
            bodies_weigh_alike(m, i, j) && bodies_hang_alike(m, i, j);
 }
 
@@ -106,12 +109,14 @@ void base_motion(const struct model *m, const struct state *s, real *a)
         quad sum = 0;
         for (int j = 0; j < 3; j++)
             sum += rows[3 * k + j] *
-                   (k == 0 ? s->base_acceleration[j] : (quad)s->base_acceleration[3 + j] - (quad)m->gravity[j]);
+                   (k == 0 ? s->base_acceleration[j]
+                           : (quad)s->base_acceleration[3 + j] - (quad)m->gravity[j]);
         a[k] = (real)sum;
     }
 }
 
-/* Columns [H W]. Picked: those of a slide are x, then normal and y. Given: against the normal, and y against y. */
+/* Columns [H W]. Picked: those of a slide are x, then normal and y. Given: against the normal, and
+ * y against y. */
 static void subspace_set(const struct body *b, struct subspace *s)
 {
     static const signed char straight[3] = {0, 1, 2}, slide[3] = {1, 0, 2};
@@ -167,8 +172,8 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
 }
 
 /* physics 1.5: centripetal at the origin, Coriolis of what slides. */
-void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
-               real *bias)
+void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h,
+               const real *u, real *bias)
 {
     (void)u;
     const struct xform *x = &pose->x;
@@ -223,11 +228,13 @@ void body_step(const struct body *b, real *q, const real *u, real h)
 }
 
 /* Given columns cost 6 flops to expand (screw_axpy) and 5 to reduce (screw_dot). */
-#define GIVEN(d)                                                                                                       \
-    .rate = 6 * (d), .h = 6 * (d), .h_transposed = 5 * (d), .w = 6 * (3 - (d)), .w_transposed = 5 * (3 - (d))
+#define GIVEN(d)                                                                                   \
+    .rate = 6 * (d), .h = 6 * (d), .h_transposed = 5 * (d), .w = 6 * (3 - (d)),                    \
+    .w_transposed = 5 * (3 - (d))
 #define PICKED(d) .rate = (d), .h = (d), .w = 3 - (d)
 
-/* Turning the tree by an angle; the bias w, w w, the origin in own axes and its product; that of slides besides. */
+/* Turning the tree by an angle; the bias w, w w, the origin in own axes and its product; that of
+ * slides besides. */
 enum { TURN = 6, SHIFT = 8, BIAS = 10, SLIDES = 6 };
 
 #define STEPS(n) .step = {.flop = 2 * (n)}
@@ -238,15 +245,23 @@ static const struct joint_cost picked[PLANE_MOVES + 1] = {
     [PLANE_STAYS] = {.bias = BIAS, PICKED(0)},
     [PLANE_TURNS] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), PICKED(1)},
     [PLANE_SLIDES] = {.place = 4, .bias = BIAS + SLIDES, STEPS(1), PICKED(1)},
-    [PLANE_MOVES] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, PICKED(3)},
+    [PLANE_MOVES] =
+        {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, PICKED(3)},
 };
 static const struct joint_cost given[PLANE_MOVES + 1] = {
     [PLANE_TURNS] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), GIVEN(1)},
-    [PLANE_MOVES] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, GIVEN(3)},
+    [PLANE_MOVES] =
+        {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, GIVEN(3)},
 };
 
-const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint_plane(joint)]; }
+const struct joint_cost *joint_cost_of(enum model_joint joint)
+{
+    return &picked[joint_plane(joint)];
+}
 
 bool body_picks(const struct body *b) { return !b->flipped; }
 
-const struct joint_cost *body_cost(const struct body *b) { return b->flipped ? &given[b->plane] : &picked[b->plane]; }
+const struct joint_cost *body_cost(const struct body *b)
+{
+    return b->flipped ? &given[b->plane] : &picked[b->plane];
+}

@@ -1,8 +1,10 @@
-/* planar_body.h - one body of a planar scene and its local computations: what body.h is for space, in three components.
+/* planar_body.h - one body of a planar scene and its local computations: what body.h is for space,
+ * in three components.
  *
- * Every body has a planar frame at its own origin (planar_frame): the scene's normal, then x and y. A joint whose axis
- * points against the normal is flipped: its columns are given instead of picked, and q, u, u', tau pass unchanged
- * between model order and here all the same. Names and contracts are those of body_calls.h and body.h. */
+ * Every body has a planar frame at its own origin (planar_frame): the scene's normal, then x and y.
+ * A joint whose axis points against the normal is flipped: its columns are given instead of picked,
+ * and q, u, u', tau pass unchanged between model order and here all the same. Names and contracts
+ * are those of body_calls.h and body.h. */
 #ifndef DYNAMICS_PLANAR_BODY_H
 #define DYNAMICS_PLANAR_BODY_H
 
@@ -11,20 +13,22 @@
 struct body {
     int parent;
     enum model_joint joint;
-    enum joint_plane plane; /* what the joint does in the plane: all that the functions below ask of it */
+    /* what the joint does in the plane: all that the functions below ask of it */
+    enum joint_plane plane;
     int d, nq;
     int q_at, u_at;
     bool has_spring, flipped;
     struct xform tree;   /* joint frame -> parent's planar frame */
     real m, s[2], ms[2]; /* mass; centre of mass from the origin; first moment */
-    real jc, jo;         /* inertia about the normal through the centre of mass, through the origin */
+    /* inertia about the normal through the centre of mass, through the origin */
+    real jc, jo;
     real per_m, per_jc;  /* their inverses, zero when there are none */
     real frame[9];       /* rows: normal, x, y in the user's body axes */
     real stiffness, rest, damping;
 };
 
-/* body_gyro: P (3) from the body's own velocity: the normal is a principal axis as far as work is concerned, so only
- * the centre of mass is pulled, and not about the origin. */
+/* body_gyro: P (3) from the body's own velocity: the normal is a principal axis as far as work is
+ * concerned, so only the centre of mass is pulled, and not about the origin. */
 enum {
     BODY_GYRO_FLOP = 3,
     BODY_LOAD_FLOP = 15,
@@ -49,7 +53,8 @@ static inline void body_force(const struct body *b, const real *a, real *f)
     f[0] = b->jc * a[0] + (b->s[0] * f[2] - b->s[1] * f[1]);
 }
 
-/* body_accelerate: a = Phi f (3): a turn by the moment about the centre of mass, whose own acceleration is f / m. */
+/* body_accelerate: a = Phi f (3): a turn by the moment about the centre of mass, whose own
+ * acceleration is f / m. */
 static inline void body_accelerate(const struct body *b, const real *f, real *a)
 {
     const real turn = b->per_jc * (f[0] - (b->s[0] * f[2] - b->s[1] * f[1]));
@@ -70,7 +75,8 @@ static inline void body_phi(const struct body *b, real *phi)
     phi[8] = b->per_m + x * b->s[0];
 }
 
-/* body_inertia_factors: zeroed `shift`, `about` (3 x 3) become those whose product shift about shift^T is I. */
+/* body_inertia_factors: zeroed `shift`, `about` (3 x 3) become those whose product shift about
+ * shift^T is I. */
 static inline void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     shift[0] = shift[4] = shift[8] = 1;

@@ -1,4 +1,5 @@
-/* planar_closed.c - forward dynamics of planar scenes, with loops through S = J M^-1 J^T, column by column. */
+/* planar_closed.c - forward dynamics of planar scenes, with loops through S = J M^-1 J^T, column by
+ * column. */
 #include <string.h>
 
 #include "dynamics/planar_dynamics.h"
@@ -18,10 +19,12 @@ struct closing {
 static struct closing closing_take(const struct scene *x, struct arena *scratch, struct work *w)
 {
     const struct model *m = x->model;
-    struct closing c = {loop_rows(m), TAKE(scratch, m->nloop, struct loop), TAKE(scratch, m->nloop, struct loop_pose),
+    struct closing c = {loop_rows(m), TAKE(scratch, m->nloop, struct loop),
+                        TAKE(scratch, m->nloop, struct loop_pose),
                         TAKE(scratch, size_product(SPACE, m->nbody), real)};
     struct xform *place = TAKE(scratch, m->nbody + 1, struct xform);
-    real *v = TAKE(scratch, size_product(SPACE, m->nbody + 1), real); /* of the base, then of the bodies */
+    /* of the base, then of the bodies */
+    real *v = TAKE(scratch, size_product(SPACE, m->nbody + 1), real);
     /* The base stands first, so that parents need no special case. */
     xform_identity(&place[0]);
     for (int i = 0; i < m->nbody; i++) {
@@ -45,7 +48,8 @@ static struct closing closing_take(const struct scene *x, struct arena *scratch,
 }
 
 /* closing_force: load = the loops' forces for lambda (n). */
-static void closing_force(const struct scene *x, const struct closing *c, const real *lambda, struct work *w)
+static void closing_force(const struct scene *x, const struct closing *c, const real *lambda,
+                          struct work *w)
 {
     /* Loads are made anew for each lambda. */
     memset(c->load, 0, (size_t)(SPACE * x->model->nbody) * sizeof(real));
@@ -56,13 +60,16 @@ static void closing_force(const struct scene *x, const struct closing *c, const 
         if (body < 0) continue;
         /* Equal and opposite on the two bodies: loop_column has the sign. */
         loop_column(&c->pose[side / 2], side % 2, column);
-        for (int k = 0; k < l->c; k++) screw_axpy(c->load + SPACE * body, lambda[l->row_at + k], column + SPACE * k);
+        for (int k = 0; k < l->c; k++)
+            screw_axpy(c->load + SPACE * body, lambda[l->row_at + k], column + SPACE * k);
         w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SCREW_AXPY_FLOP));
     }
 }
 
-/* closing_residual: r (n): what the present accelerations leave of the constraints; without terms the linear part. */
-static void closing_residual(const struct scene *x, const struct closing *c, real *r, struct work *w)
+/* closing_residual: r (n): what the present accelerations leave of the constraints; without terms
+ * the linear part. */
+static void closing_residual(const struct scene *x, const struct closing *c, real *r,
+                             struct work *w)
 {
     /* Columns of S are responses to forces alone: the base stands still in them. */
     static const real still[SPACE] = {0};
@@ -84,8 +91,10 @@ static void closing_residual(const struct scene *x, const struct closing *c, rea
     }
 }
 
-/* closing_reference: what S's rounding scales with: the constraints' own bodies as if they were free. */
-static void closing_reference(const struct scene *x, const struct closing *c, real *reference, struct work *w)
+/* closing_reference: what S's rounding scales with: the constraints' own bodies as if they were
+ * free. */
+static void closing_reference(const struct scene *x, const struct closing *c, real *reference,
+                              struct work *w)
 {
     for (int k = 0; k < c->n; k++) reference[k] = 0;
     for (int side = 0; side < 2 * x->model->nloop; side++) {
@@ -99,23 +108,26 @@ static void closing_reference(const struct scene *x, const struct closing *c, re
             body_accelerate(&x->body[body], column + SPACE * k, a);
             reference[l->row_at + k] += screw_dot(column + SPACE * k, a);
         }
-        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP + 1));
+        w->flop +=
+            (uint64_t)(l->c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP + 1));
     }
     /* A loop between the base and a massless body has no scale of its own (loops_reference). */
     for (int k = 0; k < c->n; k++)
         if (!(reference[k] > 0)) reference[k] = 1;
 }
 
-/* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops'
- * forces; twice, to remove what rounding left. */
+/* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under
+ * the loops' forces; twice, to remove what rounding left. */
 static bool closed_forward(struct scene *x, const double *tau, double *ud, struct arena *scratch,
                            struct work *w)
 {
     const struct closing c = closing_take(x, scratch, w);
     const int n = c.n;
-    real *S = TAKE(scratch, size_product(n, n), real), *copy = TAKE(scratch, size_product(n, n), real),
+    real *S = TAKE(scratch, size_product(n, n), real),
+         *copy = TAKE(scratch, size_product(n, n), real),
          *room = TAKE(scratch, size_product(n, n + 2), real);
-    real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real), *r = TAKE(scratch, n, real);
+    real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real),
+         *r = TAKE(scratch, n, real);
     const double *none = TAKE(scratch, x->model->nu, double);
     struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;
     /* (7.7) scales by A_ll, not by S: the diagonal of S may be zero but for rounding. */
@@ -140,7 +152,8 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
     }
     /* Symmetric but for rounding; the solver gets a matrix that is exactly so. */
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (real)0.5 * (S[i * n + k] + S[k * n + i]);
+        for (int k = 0; k < i; k++)
+            S[i * n + k] = S[k * n + i] = (real)0.5 * (S[i * n + k] + S[k * n + i]);
     w->flop += (uint64_t)(n * (n - 1));
     good = good && planar_open_forward(x, tau, ud, w);
     /* The second pass removes what rounding left of the first. */
@@ -160,8 +173,8 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
 }
 
 /* With or without loops: springs are given forces here. */
-bool planar_forward(const struct model *model, const struct state *s, struct arena *scratch, double *qdd,
-                    struct work *w)
+bool planar_forward(const struct model *model, const struct state *s, struct arena *scratch,
+                    double *qdd, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct scene x = planar_scene_take(model, s, scratch);
@@ -173,7 +186,8 @@ bool planar_forward(const struct model *model, const struct state *s, struct are
         if (!b->has_spring) continue;
         /* -k (q - q0) - c u; only joints of one freedom have springs (model.h). */
         const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
-        tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
+        tau[b->u_at] =
+            (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
         w->flop += BODY_SPRING_FLOP;
     }
     const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w)

@@ -1,7 +1,9 @@
-/* planar_dynamics.c - Newton-Euler and articulated bodies with three components (planar_dynamics.h).
+/* planar_dynamics.c - Newton-Euler and articulated bodies with three components
+ * (planar_dynamics.h).
  *
- * A body's velocity is its rate about the normal alone. Joint k's column of H is the normal or the x axis, with a sign
- * for flipped joints; what is about the joint is kept in these axes, so that no column is ever multiplied. */
+ * A body's velocity is its rate about the normal alone. Joint k's column of H is the normal or the
+ * x axis, with a sign for flipped joints; what is about the joint is kept in these axes, so that no
+ * column is ever multiplied. */
 #include "dynamics/planar_dynamics.h"
 
 #include <string.h>
@@ -11,7 +13,8 @@
 /* Everything of one call, from the caller's scratch. */
 struct scene planar_scene_take(const struct model *m, const struct state *s, struct arena *scratch)
 {
-    struct scene x = {m, s, bodies_make(m, scratch), TAKE(scratch, m->nbody, struct moving), {0}, NULL, true};
+    struct scene x = {
+        m, s, bodies_make(m, scratch), TAKE(scratch, m->nbody, struct moving), {0}, NULL, true};
     base_motion(m, s, x.base);
     return x;
 }
@@ -19,7 +22,8 @@ struct scene planar_scene_take(const struct model *m, const struct state *s, str
 /* x about the normal or across a flipped joint's x axis. */
 static real turned(const struct body *b, real x) { return b->flipped ? -x : x; }
 
-/* The joint's velocity (or acceleration) from its rates: about the normal and along x, y. Signs cost nothing. */
+/* The joint's velocity (or acceleration) from its rates: about the normal and along x, y. Signs
+ * cost nothing. */
 void planar_joint_motion(const struct body *b, const double *u, real *h)
 {
     screw_zero(h);
@@ -65,10 +69,13 @@ static void joint_add(const struct body *b, const real *h, real *a)
     else if (b->d > 0) a[0] += h[0];
 }
 
-static bool slides(const struct body *b) { return b->plane == PLANE_SLIDES || b->plane == PLANE_MOVES; }
+static bool slides(const struct body *b)
+{
+    return b->plane == PLANE_SLIDES || b->plane == PLANE_MOVES;
+}
 
-/* Place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: where the parent
- * moves 1 flop, and 1, 2 and 6 for the centripetal part; 5 for slides. */
+/* Place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding:
+ * where the parent moves 1 flop, and 1, 2 and 6 for the centripetal part; 5 for slides. */
 void planar_start(const struct scene *x, int i, struct work *w)
 {
     const struct body *b = &x->body[i];
@@ -103,8 +110,8 @@ void planar_start(const struct scene *x, int i, struct work *w)
     w->flop += 5;
 }
 
-/* pull: f = P - Fext: centripetal force of the centre of mass, 3 flops, less the wrench, 15 + 3, less the loops'
- * forces; without the terms the last alone. */
+/* pull: f = P - Fext: centripetal force of the centre of mass, 3 flops, less the wrench, 15 + 3,
+ * less the loops' forces; without the terms the last alone. */
 static void pull(const struct scene *x, int i, struct work *w)
 {
     const struct body *b = &x->body[i];
@@ -128,8 +135,8 @@ static void pull(const struct scene *x, int i, struct work *w)
 }
 
 /* physics (2.1) to (2.5) in three components. */
-void planar_inverse(const struct model *model, const struct state *s, struct arena *scratch, double *tau,
-                    struct work *w)
+void planar_inverse(const struct model *model, const struct state *s, struct arena *scratch,
+                    double *tau, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     const struct scene x = planar_scene_take(model, s, scratch);
@@ -172,13 +179,17 @@ static void symmetric_multiply(const real *s, const real *x, real *y)
     y[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
 }
 
-/* into += X S X^T. Rotating the linear block: C - t [s, -c; -c, -s]-wise with t = s (xx - yy) + 2 c xy, 10 flops; the
- * mixed part, 6; shifting by (-py, px), 8 + 6; adding, 6. `bare`: S has a linear block alone: 10 + 6 + 3 + 6. */
-static void hand_inertia(const struct xform *x, const real *s, bool bare, real *into, struct work *w)
+/* into += X S X^T. Rotating the linear block: C - t [s, -c; -c, -s]-wise with t = s (xx - yy) + 2 c
+ * xy, 10 flops; the mixed part, 6; shifting by (-py, px), 8 + 6; adding, 6. `bare`: S has a linear
+ * block alone: 10 + 6 + 3 + 6. */
+static void hand_inertia(const struct xform *x, const real *s, bool bare, real *into,
+                         struct work *w)
 {
-    /* With xx - (s t) and yy + (s t) the trace stays as it was: 10 flops, where r C r^T takes 21. */
+    /* With xx - (s t) and yy + (s t) the trace stays as it was: 10 flops, where r C r^T takes
+     * 21. */
     const real t = x->s * (s[3] - s[5]) + (x->c + x->c) * s[4];
-    const real st = x->s * t, xx = s[3] - st, yy = s[5] + st, xy = x->c * t - s[4], jx = -x->p[1], jy = x->p[0];
+    const real st = x->s * t, xx = s[3] - st, yy = s[5] + st, xy = x->c * t - s[4], jx = -x->p[1],
+               jy = x->p[0];
     real shifted_x = xx * jx + xy * jy, shifted_y = xy * jx + yy * jy;
     /* Eliminating a turn empties the row of the normal: no moment, no mixed part. */
     if (bare) {
@@ -207,11 +218,12 @@ static void rigid(const struct body *b, real *s)
     s[4] = 0;
 }
 
-/* Joint of one degree of freedom along axis k: what is left of the inertia and of the bias force when it gives way.
- * False: nothing resists there. */
+/* Joint of one degree of freedom along axis k: what is left of the inertia and of the bias force
+ * when it gives way. False: nothing resists there. */
 static bool give_way(struct moving *m, int k, real tau, real *left, struct work *w)
 {
-    static const signed char row[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, others[2][2] = {{1, 2}, {0, 2}};
+    static const signed char row[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}},
+                             others[2][2] = {{1, 2}, {0, 2}};
     const real *s = m->inertia, d = s[row[k][k]];
     /* The two components that stay. */
     const int i = others[k][0], j = others[k][1];
@@ -234,8 +246,9 @@ static bool give_way(struct moving *m, int k, real tau, real *left, struct work 
     return true;
 }
 
-/* articulate: body i gives way along its joint and hands the rest to its parent. On a joint of three degrees of freedom
- * nothing is left but the joint force, and the way back needs the bias force as it was. */
+/* articulate: body i gives way along its joint and hands the rest to its parent. On a joint of
+ * three degrees of freedom nothing is left but the joint force, and the way back needs the bias
+ * force as it was. */
 static bool articulate(const struct scene *x, int i, const double *tau, struct work *w)
 {
     const struct body *b = &x->body[i];
@@ -260,7 +273,8 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
     }
     /* Nobody asks for what reaches the base. */
     if (!parent) return true;
-    if (b->plane != PLANE_MOVES) hand_inertia(&m->pose.x, left, b->plane == PLANE_TURNS, parent->inertia, w);
+    if (b->plane != PLANE_MOVES)
+        hand_inertia(&m->pose.x, left, b->plane == PLANE_TURNS, parent->inertia, w);
     xform_force(moved, &m->pose.x, b->plane == PLANE_MOVES ? force : m->f);
     screw_add(parent->f, moved);
     w->flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
@@ -272,7 +286,8 @@ static bool symmetric_solve(const real *s, const real *x, real *y, struct work *
 {
     /* L D L^T of a 3x3, written out. */
     if (!(s[0] > 0)) return false;
-    const real d0 = 1 / s[0], l1 = s[1] * d0, l2 = s[2] * d0, m11 = s[3] - l1 * s[1], m21 = s[4] - l2 * s[1];
+    const real d0 = 1 / s[0], l1 = s[1] * d0, l2 = s[2] * d0, m11 = s[3] - l1 * s[1],
+               m21 = s[4] - l2 * s[1];
     if (!(m11 > 0)) return false;
     const real d1 = 1 / m11, l21 = m21 * d1, m22 = s[5] - l2 * s[2] - l21 * m21;
     if (!(m22 > 0)) return false;
@@ -319,7 +334,8 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
     return true;
 }
 
-/* planar_open_forward: accelerations of the scene cut open, with x's loads and terms; the bodies have been started. */
+/* planar_open_forward: accelerations of the scene cut open, with x's loads and terms; the bodies
+ * have been started. */
 bool planar_open_forward(const struct scene *x, const double *tau, double *ud, struct work *w)
 {
     bool good = true;
@@ -328,7 +344,8 @@ bool planar_open_forward(const struct scene *x, const double *tau, double *ud, s
         pull(x, i, w);
         rigid(&x->body[i], x->moving[i].inertia);
     }
-    for (int i = x->model->nbody - 1; i >= 0 && good; i--) good = articulate(x, i, tau + x->body[i].u_at, w);
+    for (int i = x->model->nbody - 1; i >= 0 && good; i--)
+        good = articulate(x, i, tau + x->body[i].u_at, w);
     for (int i = 0; i < x->model->nbody && good; i++)
         good = accelerate(x, i, tau + x->body[i].u_at, ud + x->body[i].u_at, w);
     return good;

@@ -1,11 +1,12 @@
-/* planar_loop.c - loop joints seen along the normal: constants, pose, velocity terms (planar_loop.h). */
+/* planar_loop.c - loop joints seen along the normal: constants, pose, velocity terms
+ * (planar_loop.h). */
 #include "dynamics/planar_loop.h"
 
 #include "base/check.h"
 #include "dynamics/planar_frame.h"
 
-/* A constraint in the axes of its loop frame, [angular; linear]: a row of the file's or one of the joint's.
- * Both kinds as one row of six numbers. */
+/* A constraint in the axes of its loop frame, [angular; linear]: a row of the file's or one of the
+ * joint's. Both kinds as one row of six numbers. */
 static void spatial_row(const struct loop_def *def, int k, quad *row)
 {
     for (int j = 0; j < 6; j++) row[j] = 0;
@@ -34,7 +35,8 @@ static bool planar_row(const struct loop_def *def, int k, const quad *rows, real
 }
 
 /* Rounded once, as all constants. */
-static void to_transform(const quad *outer, const quad *inner, const struct frame *f, struct xform *x)
+static void to_transform(const quad *outer, const quad *inner, const struct frame *f,
+                         struct xform *x)
 {
     quad y[4];
     planar_placement(outer, inner, f, y);
@@ -111,7 +113,8 @@ static void between(struct xform *y, const struct xform *a, const struct xform *
     turn_back(a, p, y->p);
 }
 
-/* gamma += sign times the centripetal acceleration of a point at p on a body that turns at the rate w. */
+/* gamma += sign times the centripetal acceleration of a point at p on a body that turns at the rate
+ * w. */
 enum { CENTRIPETAL_FLOP = 8 };
 static void add_centripetal(real sign, real w, const real *p, real *gamma)
 {
@@ -120,8 +123,8 @@ static void add_centripetal(real sign, real w, const real *p, real *gamma)
 }
 
 /* As place_rows and place_joint of loop.c, in three components. */
-void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
-                struct loop_pose *p)
+void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb,
+                const real *va, const real *vb, struct loop_pose *p)
 {
     struct xform wa, wb, rel;
     real a[SPACE], b[SPACE], relative[SPACE], error[SPACE], pa[2], pb[2];
@@ -162,15 +165,17 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
         const real *w = l->w + SPACE * k;
         screw_copy(p->w + SPACE * k, w);
         /* (7.2): 2 alpha W^T rho + beta^2 g. */
-        p->stabilise[k] = 2 * l->alpha * screw_dot(w, relative) + l->beta * l->beta * screw_dot(w, error);
+        p->stabilise[k] =
+            2 * l->alpha * screw_dot(w, relative) + l->beta * l->beta * screw_dot(w, error);
     }
 }
 
 /* The sums of what loop_place calls. */
 int loop_place_flops(const struct loop *l)
 {
-    return 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP + 2 * TURN_BACK_FLOP +
-           2 * CENTRIPETAL_FLOP + (l->by_rows ? 0 : 6 + TURN_BACK_FLOP) + l->c * (2 * SCREW_DOT_FLOP + 5);
+    return 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
+           2 * TURN_BACK_FLOP + 2 * CENTRIPETAL_FLOP + (l->by_rows ? 0 : 6 + TURN_BACK_FLOP) +
+           l->c * (2 * SCREW_DOT_FLOP + 5);
 }
 
 /* As in space. */

@@ -1,4 +1,5 @@
-/* planar_scene.h - what the files of the serial planar dynamics share: bodies in motion, and the scene they are in. */
+/* planar_scene.h - what the files of the serial planar dynamics share: bodies in motion, and the
+ * scene they are in. */
 #ifndef DYNAMICS_PLANAR_SCENE_H
 #define DYNAMICS_PLANAR_SCENE_H
 
@@ -26,17 +27,17 @@ struct scene {
     bool terms;       /* with velocity terms, wrenches and the base's acceleration */
 };
 
-/* planar_scene_take: everything of one call, in `scratch`. planar_start: body i placed and set in motion, parents
- * first. */
+/* planar_scene_take: everything of one call, in `scratch`. planar_start: body i placed and set in
+ * motion, parents first. */
 struct scene planar_scene_take(const struct model *m, const struct state *s, struct arena *scratch);
 void planar_start(const struct scene *x, int i, struct work *w);
 
-/* planar_joint_motion: h (3): the joint's velocity (or acceleration) from its rates: about the normal and along x, y.
- * Signs cost nothing. */
+/* planar_joint_motion: h (3): the joint's velocity (or acceleration) from its rates: about the
+ * normal and along x, y. Signs cost nothing. */
 void planar_joint_motion(const struct body *b, const double *u, real *h);
 
-/* planar_open_forward: accelerations ud (nu) of the scene cut open for joint forces tau (nu), with x's loads and terms;
- * the bodies have been placed. False: nothing resists along some joint. */
+/* planar_open_forward: accelerations ud (nu) of the scene cut open for joint forces tau (nu), with
+ * x's loads and terms; the bodies have been placed. False: nothing resists along some joint. */
 bool planar_open_forward(const struct scene *x, const double *tau, double *ud, struct work *w);
 
 #endif

@@ -4,7 +4,8 @@
 
 #include "linalg/real.h"
 
-/* relative_size: max |x| / max |y| of n numbers; 1 when y is 0 and x is not, infinite when x is not finite. */
+/* relative_size: max |x| / max |y| of n numbers; 1 when y is 0 and x is not, infinite when x is not
+ * finite. */
 double relative_size(int n, const real *x, const real *y);
 
 #endif

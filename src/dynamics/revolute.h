@@ -1,8 +1,9 @@
 /* revolute.h - compact constants and the fast paths of systems whose joints are all revolute.
  *
- * A body takes 22 numbers in one piece of memory; r = E Rz(q) and the joint's simple H and b are exploited throughout.
- * Second moments S = tr(J)/2 U - J replace the inertia: with K = w'~ + w~ w~ the moment about the centre of mass is
- * the skew part of K S (33 flops instead of 42), and K gives both the centre's and the children's accelerations. */
+ * A body takes 22 numbers in one piece of memory; r = E Rz(q) and the joint's simple H and b are
+ * exploited throughout. Second moments S = tr(J)/2 U - J replace the inertia: with K = w'~ + w~ w~
+ * the moment about the centre of mass is the skew part of K S (33 flops instead of 42), and K gives
+ * both the centre's and the children's accelerations. */
 #ifndef DYNAMICS_REVOLUTE_H
 #define DYNAMICS_REVOLUTE_H
 
@@ -19,8 +20,10 @@ struct revolute {
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a);
 
 /* rnea_revolute, aba_revolute, crba_revolute: rnea, aba and crba for d->revolute. w may be NULL. */
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
+                   struct work *w);
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+                  struct work *w);
 void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w);
 
 /* What a fast path executes [flop]: for each body, for each that hangs on another one besides. */
@@ -28,7 +31,8 @@ struct revolute_cost {
     int body, child, div; /* div: divisions a body */
 };
 
-/* revolute_count: *w += that for all bodies of d, a sine, a cosine and a call each. w may be NULL. */
+/* revolute_count: *w += that for all bodies of d, a sine, a cosine and a call each. w may be
+ * NULL. */
 void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w);
 
 #endif

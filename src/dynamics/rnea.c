@@ -63,7 +63,8 @@ static void inward(struct dynamics *d, real *tau)
 }
 
 /* Any joints; the counts follow from the joint types alone. */
-void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
+void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
+               struct work *w)
 {
     dynamics_place(d, q);
     if (d->at_rest) outward_at_rest(d, ud);
@@ -73,7 +74,8 @@ void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud,
 }
 
 /* The fast path has the same answer to rounding. */
-void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
+void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
+          struct work *w)
 {
     if (d->revolute) rnea_revolute(d, q, u, ud, tau, w);
     else rnea_full(d, q, u, ud, tau, w);

@@ -1,4 +1,5 @@
-/* rnea_revolute.c - inverse dynamics of all-revolute systems: 216 flops a body besides sine and cosine. */
+/* rnea_revolute.c - inverse dynamics of all-revolute systems: 216 flops a body besides sine and
+ * cosine. */
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 
@@ -31,15 +32,16 @@ static inline void spin_matrix(struct motion *c)
 
 /* w, al, a of body c from its parent's p: the joint adds z u and z ud + w* x z u. */
 enum { CARRY_FLOP = 2 * MAT3_VEC_FLOP + 18 + 1 + 5 + MAT3_VEC_FLOP + SPIN_FLOP };
-static inline void carry(const struct revolute *b, const real *r, real u, real ud, const struct motion *p,
-                         struct motion *c)
+static inline void carry(const struct revolute *b, const real *r, real u, real ud,
+                         const struct motion *p, struct motion *c)
 {
     const real *t = b->t, *k = p->k;
     real g[3], w[3], al[3];
     mat3_mul_vec_transposed(w, r, p->w);
     mat3_mul_vec_transposed(al, r, p->al);
     /* The origin accelerates as a point of the parent: a + K t, in parent axes. */
-    for (int i = 0; i < 3; i++) g[i] = p->a[i] + (k[3 * i] * t[0] + k[3 * i + 1] * t[1] + k[3 * i + 2] * t[2]);
+    for (int i = 0; i < 3; i++)
+        g[i] = p->a[i] + (k[3 * i] * t[0] + k[3 * i + 1] * t[1] + k[3 * i + 2] * t[2]);
     /* (1.9) with H = z: the angular part of b is w* x z u; the linear one is in K t. */
     vec3_set(c->w, w[0], w[1], w[2] + u);
     vec3_set(c->al, al[0] + w[1] * u, al[1] - w[0] * u, al[2] + ud);
@@ -52,7 +54,8 @@ enum { NEWTON_EULER_FLOP = 21 + 33 + VEC3_CROSS_ADD_FLOP };
 static inline void newton_euler(const struct revolute *b, const struct motion *c, real *f, real *n)
 {
     const real *s = b->s, *S = b->second, *k = c->k;
-    for (int i = 0; i < 3; i++) f[i] = b->m * (c->a[i] + (k[3 * i] * s[0] + k[3 * i + 1] * s[1] + k[3 * i + 2] * s[2]));
+    for (int i = 0; i < 3; i++)
+        f[i] = b->m * (c->a[i] + (k[3 * i] * s[0] + k[3 * i + 1] * s[1] + k[3 * i + 2] * s[2]));
     /* The moment of K r r^T dm over the body, summed by its second moments S about the centre:
      * the same as J w' + w x J w, and K is there already. */
     n[0] = (k[6] * S[1] + k[7] * S[3] + k[8] * S[4]) - (k[3] * S[2] + k[4] * S[4] + k[5] * S[5]);
@@ -67,8 +70,8 @@ enum {
     NEWTON_EULER_AT_REST_FLOP = VEC3_CROSS_ADD_FLOP + VEC3_SCALE_FLOP + 21 + VEC3_CROSS_ADD_FLOP
 };
 /* Nothing turns: only accelerations are carried. */
-static inline void carry_at_rest(const struct revolute *b, const real *r, real ud, const struct motion *p,
-                                 struct motion *c)
+static inline void carry_at_rest(const struct revolute *b, const real *r, real ud,
+                                 const struct motion *p, struct motion *c)
 {
     real g[3];
     mat3_mul_vec_transposed(c->al, r, p->al);
@@ -79,7 +82,8 @@ static inline void carry_at_rest(const struct revolute *b, const real *r, real u
 }
 
 /* Nor are there centripetal terms. */
-static inline void newton_euler_at_rest(const struct revolute *b, const struct motion *c, real *f, real *n)
+static inline void newton_euler_at_rest(const struct revolute *b, const struct motion *c, real *f,
+                                        real *n)
 {
     const real *s = b->s, *S = b->second, *al = c->al;
     real g[3];
@@ -105,7 +109,8 @@ static inline void hand_down(const struct revolute *b, const struct load *c, str
 }
 
 /* Both sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
-static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const real *u, const real *ud, real *tau)
+static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const real *u,
+                         const real *ud, real *tau)
 {
     int n = d->nbody;
     /* a chain needs only the last body's motion: two slots */
@@ -146,7 +151,8 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
 }
 
 /* Two cases compiled apart, at rest and in motion. */
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
+                   struct work *w)
 {
     const int body = d->at_rest ? MAT3_TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP
                                 : MAT3_TURN_FLOP + CARRY_FLOP + NEWTON_EULER_FLOP;

@@ -31,17 +31,19 @@ static void refine(struct dynamics *d, const real *q, const real *u, const real 
 }
 
 /* Constraint forces first, since their error shows; articulated bodies where they fail. */
-bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
-                    struct cfa_report *report, struct work *w)
+bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+                    real *lambda, struct cfa_report *report, struct work *w)
 {
     const struct cfa_options options = {.direct = true, .inner = 1, .outer = ROBUST_OUTER};
     struct cfa_report own;
-    const double enough = 1e6 * (double)REAL_EPSILON; /* a last correction under this leaves rounding alone */
+    /* a last correction under this leaves rounding alone */
+    const double enough = 1e6 * (double)REAL_EPSILON;
     bool good = cfa(d, q, u, tau, &options, ud, lambda, &own, w) && own.correction <= enough;
     if (!good) {
         /* Begin anew: what the first method left is worth nothing. */
         own = (struct cfa_report){.nrow = d->model->nrow};
-        good = d->model->nloop > 0 ? closed_forward(d, q, u, tau, ud, lambda, &own, w) : aba_full(d, q, u, tau, ud, w);
+        good = d->model->nloop > 0 ? closed_forward(d, q, u, tau, ud, lambda, &own, w)
+                                   : aba_full(d, q, u, tau, ud, w);
         if (good && d->model->nloop == 0) refine(d, q, u, tau, ud, &own, w);
         own.fell_back = true;
     }

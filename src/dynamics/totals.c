@@ -1,9 +1,11 @@
-/* totals.c - energy, momentum, centre of mass; positions and motion of all bodies; drift of loops. */
+/* totals.c - energy, momentum, centre of mass; positions and motion of all bodies; drift of
+ * loops. */
 #include "dynamics/dynamics.h"
 #include "dynamics/loops.h"
 
 /* One body's part; com in *t is the first moment until the end. */
-static void add_body(const struct dynamics *d, int i, const struct xform *x, struct motion_totals *t)
+static void add_body(const struct dynamics *d, int i, const struct xform *x,
+                     struct motion_totals *t)
 {
     const struct body *b = &d->body[i];
     const real *v = d->v + 6 * i, half = (real)0.5;
@@ -29,7 +31,8 @@ static void add_body(const struct dynamics *d, int i, const struct xform *x, str
     for (int k = 0; k < 3; k++) t->com[k] += b->m * c[k];
 }
 
-/* All bodies at q in motion u: poses, velocities and bias in d; where they are in the base's frame. */
+/* All bodies at q in motion u: poses, velocities and bias in d; where they are in the base's
+ * frame. */
 static struct xform *world_motion(struct dynamics *d, const real *q, const real *u)
 {
     dynamics_place(d, q);
@@ -57,7 +60,8 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
 }
 
 /* Everything that an observer in the base's frame would measure. */
-void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out)
+void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud,
+                        struct body_motion *out)
 {
     struct arena_mark mark = arena_mark(d->arena);
     const struct xform *x = world_motion(d, q, u);

@@ -19,9 +19,10 @@ const char *const *trajectory_steppers(void) { return names; }
 static const gsl_odeiv2_step_type *stepper_of(int i)
 {
     const gsl_odeiv2_step_type *const type[] = {
-        gsl_odeiv2_step_rk2,    gsl_odeiv2_step_rk4,    gsl_odeiv2_step_rkf45,  gsl_odeiv2_step_rkck,
-        gsl_odeiv2_step_rk8pd,  gsl_odeiv2_step_msadams, gsl_odeiv2_step_rk1imp, gsl_odeiv2_step_rk2imp,
-        gsl_odeiv2_step_rk4imp, gsl_odeiv2_step_bsimp,  gsl_odeiv2_step_msbdf};
+        gsl_odeiv2_step_rk2,    gsl_odeiv2_step_rk4,    gsl_odeiv2_step_rkf45,
+        gsl_odeiv2_step_rkck,   gsl_odeiv2_step_rk8pd,  gsl_odeiv2_step_msadams,
+        gsl_odeiv2_step_rk1imp, gsl_odeiv2_step_rk2imp, gsl_odeiv2_step_rk4imp,
+        gsl_odeiv2_step_bsimp,  gsl_odeiv2_step_msbdf};
     return type[i];
 }
 
@@ -93,12 +94,13 @@ static int stepper_find(const char *name, struct err *e)
         if (strcmp(names[i], name) == 0) return i;
     /* As everywhere: the nearest name. */
     const char *near = text_nearest(name, names, count);
-    err_set(e, ERR_USAGE, "no integrator '%s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
-            near ? "'?" : "");
+    err_set(e, ERR_USAGE, "no integrator '%s'%s%s%s", name, near ? "; did you mean '" : "",
+            near ? near : "", near ? "'?" : "");
     return -1;
 }
 
-/* Drive to the end; the number of steps, negative when GSL failed. GSL's default handler would abort. */
+/* Drive to the end; the number of steps, negative when GSL failed. GSL's default handler would
+ * abort. */
 static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
 {
     /* GSL's driver chooses its steps by its own estimate of the error. */
@@ -109,15 +111,17 @@ static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
     return status == GSL_SUCCESS ? (long)driver->e->count : -1;
 }
 
-/* The same in `steps` equal steps, past the driver's control of the error; it still says how well implicit equations
- * are to be solved. */
-static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, double *y, double *error)
+/* The same in `steps` equal steps, past the driver's control of the error; it still says how well
+ * implicit equations are to be solved. */
+static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, double *y,
+                        double *error)
 {
     const double h = duration / (double)steps;
     int status = GSL_SUCCESS;
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     for (long k = 0; k < steps && status == GSL_SUCCESS; k++)
-        status = gsl_odeiv2_step_apply(driver->s, (double)k * h, h, y, error, NULL, NULL, driver->sys);
+        status =
+            gsl_odeiv2_step_apply(driver->s, (double)k * h, h, y, error, NULL, NULL, driver->sys);
     gsl_set_error_handler(handler);
     return status == GSL_SUCCESS ? steps : -1;
 }
@@ -138,7 +142,9 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
                                      "finite", options->stepper, duration);
     struct arena_mark mark = arena_mark(scratch);
     /* q and u as one vector of plain numbers. */
-    struct flow f = {.d = dynamics_take(m, scratch), .tau = s->tau, .shifted = TAKE(scratch, n, double),
+    struct flow f = {.d = dynamics_take(m, scratch),
+                     .tau = s->tau,
+                     .shifted = TAKE(scratch, n, double),
                      .change = TAKE(scratch, n, double)};
     f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
     dynamics_load(f.d, s);
@@ -150,13 +156,13 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     gsl_odeiv2_system system = {derivative, jacobian, n, &f};
     /* The first step is a guess; the driver finds its own. */
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    gsl_odeiv2_driver *driver =
-        gsl_odeiv2_driver_alloc_y_new(&system, stepper_of(which), first, options->tolerance, options->tolerance);
+    gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(
+        &system, stepper_of(which), first, options->tolerance, options->tolerance);
     gsl_set_error_handler(handler);
     if (!driver) check_memory(n * sizeof(double));
-    long steps = options->fixed_steps > 0
-                     ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
-                     : drive(driver, duration, y);
+    long steps = options->fixed_steps > 0 ? drive_fixed(driver, duration, options->fixed_steps, y,
+                                                        TAKE(scratch, n, double))
+                                          : drive(driver, duration, y);
     gsl_odeiv2_driver_free(driver);
     /* A step may end in overflow without GSL noticing. */
     bool finite = true;
@@ -166,11 +172,14 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
     arena_release(scratch, mark);
     if (steps >= 0 && finite) return true;
-    if (steps >= 0) return err_set(e, ERR_CHECK, "integrator '%s' produced a value that is not a finite "
-                                                 "number", options->stepper);
+    if (steps >= 0)
+        return err_set(e, ERR_CHECK,
+                       "integrator '%s' produced a value that is not a finite number",
+                       options->stepper);
     if (f.evaluations > f.most)
         return err_set(e, ERR_CHECK, "integrator '%s' did not reach the end time within %ld "
                                      "evaluations", options->stepper, f.most);
     return err_set(e, ERR_CHECK, "integrator '%s' %s", options->stepper,
-                   options->fixed_steps > 0 ? "broke down in a fixed step" : "gave up: its step size vanished");
+                   options->fixed_steps > 0 ? "broke down in a fixed step"
+                                            : "gave up: its step size vanished");
 }

@@ -19,7 +19,8 @@ void work_count_velocities(const struct dynamics *d, struct work *w)
     if (!w || d->at_rest) return;
     for (int i = 0; i < d->nbody; i++) {
         const struct joint_cost *c = joint_cost_of(d->body[i].joint);
-        w->flop += (uint64_t)(c->rate + c->bias + (d->body[i].parent >= 0 ? XFORM_MOTION_FLOP + SCREW_ADD_FLOP : 0));
+        w->flop += (uint64_t)(c->rate + c->bias +
+                              (d->body[i].parent >= 0 ? XFORM_MOTION_FLOP + SCREW_ADD_FLOP : 0));
     }
 }
 
@@ -50,12 +51,13 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
         /* Bodies on the base neither hand forces on nor are carried. */
         bool child = b->parent >= 0;
         w->call += 1;
-        w->flop += (uint64_t)(c->h + c->h_transposed + XFORM_MOTION_FLOP + SCREW_ADD_FLOP + BODY_FORCE_FLOP + load +
-                              (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
+        w->flop +=
+            (uint64_t)(c->h + c->h_transposed + XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
+                       BODY_FORCE_FLOP + load + (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
         /* Angular velocities, bias and P. */
         if (!d->at_rest)
-            w->flop += (uint64_t)(c->rate + c->bias + (child ? MAT3_VEC_FLOP + VEC3_ADD_FLOP : 0) + BODY_GYRO_FLOP +
-                                  SCREW_ADD_FLOP);
+            w->flop += (uint64_t)(c->rate + c->bias + (child ? MAT3_VEC_FLOP + VEC3_ADD_FLOP : 0) +
+                                  BODY_GYRO_FLOP + SCREW_ADD_FLOP);
     }
 }
 
@@ -64,12 +66,16 @@ static void count_eliminate(const struct body *b, const struct joint_cost *cost,
 {
     uint64_t d = (uint64_t)b->d, c = 6 - d;
     /* chol(d) of (2.9); d of its operations are divisions, which are counted below. */
-    w->flop += d * (d + 1) * (2 * d + 1) / 6 - d + (2 * d * d - d) + d * (d - 1) * c; /* factor, solve, forward */
-    w->flop += d + c * (c + 1) / 2 * 3 * d + 2 * c * d;                               /* e, Schur, p */
+    /* factor, solve, forward */
+    w->flop += d * (d + 1) * (2 * d + 1) / 6 - d + (2 * d * d - d) + d * (d - 1) * c;
+    /* e, Schur, p */
+    w->flop += d + c * (c + 1) / 2 * 3 * d + 2 * c * d;
     w->div += d;
     /* Into joint axes and back, where columns are not unit vectors. */
-    if (!body_picks(b)) w->flop += 396 + 21 * 11 + 66 + c * c * 21 * 3;               /* joint axes and back */
-    w->flop += 2 * c * d + (2 * d * d - d) + 2 * d;                                   /* accelerate */
+    /* joint axes and back */
+    if (!body_picks(b)) w->flop += 396 + 21 * 11 + 66 + c * c * 21 * 3;
+    /* accelerate */
+    w->flop += 2 * c * d + (2 * d * d - d) + 2 * d;
     w->flop += (uint64_t)(2 * cost->h + 2 * cost->w + cost->h_transposed + cost->w_transposed);
 }
 
@@ -86,7 +92,8 @@ void work_count_aba(const struct dynamics *d, bool moving, struct work *w)
         if (moving && !d->at_rest)
             w->flop += (uint64_t)(BODY_GYRO_FLOP + SYM6_MUL_FLOP + SCREW_ADD_FLOP + SCREW_ADD_FLOP);
         if (b->parent >= 0)
-            w->flop += (uint64_t)(SYM6_MOVE_FLOP + SYM6_ADD_FLOP + XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
+            w->flop +=
+                (uint64_t)(SYM6_MOVE_FLOP + SYM6_ADD_FLOP + XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
         count_eliminate(b, joint_cost_of(b->joint), w);
     }
 }
@@ -103,7 +110,8 @@ void work_count_crba(const struct dynamics *d, struct work *w)
         /* Each column walks to the root: depth matters, not the number of bodies. */
         uint64_t column = INERTIA_MUL_FLOP + (uint64_t)joint_cost_of(b->joint)->h_transposed;
         for (int j = i; d->body[j].parent >= 0; j = d->body[j].parent)
-            column += XFORM_FORCE_FLOP + (uint64_t)joint_cost_of(d->body[d->body[j].parent].joint)->h_transposed;
+            column += XFORM_FORCE_FLOP +
+                      (uint64_t)joint_cost_of(d->body[d->body[j].parent].joint)->h_transposed;
         w->flop += column * (uint64_t)b->d;
     }
 }

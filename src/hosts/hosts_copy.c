@@ -24,7 +24,8 @@ bool hosts_copy_out(const struct hosts *h, int to, int tag, const void *data, si
     return true;
 }
 
-/* Each piece tells its size; together they are what was asked for, or the sender has another mind. */
+/* Each piece tells its size; together they are what was asked for, or the sender has another
+ * mind. */
 bool hosts_copy_in(const struct hosts *h, int from, int tag, void *data, size_t bytes)
 {
     for (char *p = data; bytes > 0;) {

@@ -4,8 +4,9 @@
 
 #include "hosts/hosts.h"
 
-/* hosts_copy_out: send `bytes` of `data` to process `to`; hosts_copy_in: receive as many from `from`, which must send
- * as many. Whoever waits sleeps in between: MPI's own waiting would take a processor. */
+/* hosts_copy_out: send `bytes` of `data` to process `to`; hosts_copy_in: receive as many from
+ * `from`, which must send as many. Whoever waits sleeps in between: MPI's own waiting would take a
+ * processor. */
 bool hosts_copy_out(const struct hosts *h, int to, int tag, const void *data, size_t bytes);
 bool hosts_copy_in(const struct hosts *h, int from, int tag, void *data, size_t bytes);
 

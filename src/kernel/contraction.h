@@ -1,14 +1,14 @@
-/* contraction.h - parallel forward dynamics of a tree: the constraint force system eliminated in the order of a tree
- * contraction, one rank's program (physics 6.2).
+/* contraction.h - parallel forward dynamics of a tree: the constraint force system eliminated in
+ * the order of a tree contraction, one rank's program (physics 6.2).
  *
  * A compound is a connected set of bodies with a top joint and one open bottom body:
  *
  *     a_1 = P11 f_1 + P12 f_2 + beta_1,   a_2 = P12^T f_1 + P22 f_2 + beta_2
  *
- * f_1 acts at the top joint, f_2 at the bottom body. Loads come in columns: the real ones first, then one for each
- * loop constraint. The paper's formulation contracts what remains of tau after a bias inverse dynamics, without
- * velocity terms; the direct one keeps those in beta and in the joints' biases. Refinements contract again, with the
- * residual for a load. */
+ * f_1 acts at the top joint, f_2 at the bottom body. Loads come in columns: the real ones first,
+ * then one for each loop constraint. The paper's formulation contracts what remains of tau after a
+ * bias inverse dynamics, without velocity terms; the direct one keeps those in beta and in the
+ * joints' biases. Refinements contract again, with the residual for a load. */
 #ifndef KERNEL_CONTRACTION_H
 #define KERNEL_CONTRACTION_H
 
@@ -56,21 +56,26 @@ struct contraction {
 };
 
 /* contraction_carve: room for rank `rank`. */
-void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job, int rank);
+void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job,
+                       int rank);
 
 /* contraction_set: the communicator of this rank. */
 void contraction_set(struct contraction *k, struct comm *c);
 
-/* contraction_run: the job's evaluation or time steps; the first evaluation's answer into the job's arrays. */
+/* contraction_run: the job's evaluation or time steps; the first evaluation's answer into the job's
+ * arrays. */
 void contraction_run(struct contraction *k);
 
-/* contraction_solve: f1, f2 of all own bodies for what is given (k->given, k->m columns): contract, then undo. */
+/* contraction_solve: f1, f2 of all own bodies for what is given (k->given, k->m columns): contract,
+ * then undo. */
 void contraction_solve(struct contraction *k);
 
-/* contraction_record_size: numbers that an operation leaves for its undoing at the rank of its `into`. */
+/* contraction_record_size: numbers that an operation leaves for its undoing at the rank of its
+ * `into`. */
 static inline int contraction_record_size(enum tree_kind kind, int room)
 {
-    return kind == TREE_RAKE ? COMPOUND_MATRICES + 2 * SPACE * room : 2 * SQUARE + XFORM_NUMBERS + SPACE * room;
+    return kind == TREE_RAKE ? COMPOUND_MATRICES + 2 * SPACE * room
+                             : 2 * SQUARE + XFORM_NUMBERS + SPACE * room;
 }
 
 #endif

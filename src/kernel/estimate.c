@@ -257,7 +257,8 @@ static double stepping(const struct kernel_spec *k, const struct model *m, doubl
         slope += (double)c->qdot.flop;
     }
     /* a kick is two flops a rate; Runge-Kutta weighs and adds, scales and adds, in four stages */
-    if (k->step == STEP_RK4) return k->steps * (4 * (slope + 4.0 * (m->nq + m->nu)) + drift + ranks);
+    if (k->step == STEP_RK4)
+        return k->steps * (4 * (slope + 4.0 * (m->nq + m->nu)) + drift + ranks);
     if (k->step == STEP_KDK) return k->steps * (6.0 * m->nu + drift + ranks);
     return k->steps * (2.0 * m->nu + drift);
 }

@@ -1,9 +1,9 @@
 /* estimate_tree.c - costs of the programs for trees, from the plan that they follow (estimate.h).
  *
- * The number of operations depends on the tree's shape and has no formula: the plan itself is walked,
- * and each operation of it adds what its function executes (tree.c, contraction.c,
- * contraction_solve.c, compound.c). Only the eigenvalues of loops' least norm solution are left out,
- * whose rotations depend on the numbers. */
+ * The number of operations depends on the tree's shape and has no formula: the plan itself is
+ * walked, and each operation of it adds what its function executes (tree.c, contraction.c,
+ * contraction_solve.c, compound.c). Only the eigenvalues of loops' least norm solution are left
+ * out, whose rotations depend on the numbers. */
 #include "dynamics/algebra.h"
 #include "kernel/compound.h"
 #include "kernel/estimate.h"
@@ -12,7 +12,10 @@
 #include "linalg/dense.h"
 
 /* A motion or force moved through a joint and added. */
-enum { ADD_MOTION = XFORM_MOTION_FLOP + SCREW_ADD_FLOP, ADD_FORCE = XFORM_FORCE_FLOP + SCREW_ADD_FLOP };
+enum {
+    ADD_MOTION = XFORM_MOTION_FLOP + SCREW_ADD_FLOP,
+    ADD_FORCE = XFORM_FORCE_FLOP + SCREW_ADD_FLOP
+};
 
 /* tree_walk: what an estimate looks at. */
 struct tree_walk {
@@ -24,7 +27,8 @@ struct tree_walk {
     bool wrenches;           /* external forces act */
     real step;               /* implicit_step */
     double entries, jumps, composing; /* of one scan, see count_jumps */
-    double inner_bodies, on_base;     /* bodies whose parent is in their piece; bodies on the base */
+    /* bodies whose parent is in their piece; bodies on the base */
+    double inner_bodies, on_base;
     double placing;                   /* bodies of pieces that compose transforms */
 };
 
@@ -40,8 +44,9 @@ static void add(struct program_estimate *e, double messages, double numbers)
     e->bytes += messages * numbers * (double)sizeof(real);
 }
 
-/* count_jumps: messages of one scan over the pieces: from anchors to pieces, then between ancestors;
- * `composing` of them carry a transform, too: with loops all, since places in the base are wanted. */
+/* count_jumps: messages of one scan over the pieces: from anchors to pieces, then between
+ * ancestors; `composing` of them carry a transform, too: with loops all, since places in the base
+ * are wanted. */
 static void count_jumps(struct tree_walk *t)
 {
     const struct tree_plan *p = t->plan;
@@ -159,8 +164,8 @@ static double force(double m, bool active, bool bias, bool entry)
 static double rake(const struct tree_walk *t, const struct body *b, const struct given *g)
 {
     enum { LEAF_UNDO = XFORM_MOTION_FLOP + SQUARE_VEC_FLOP + SCREW_ADD_FLOP };
-    return compliance(t, b) + force(g->m, g->active, g->bias, false) + 2 * SPACE * XFORM_FORCE_FLOP +
-           3 * PACKED + g->m * (ADD_FORCE + LEAF_UNDO);
+    return compliance(t, b) + force(g->m, g->active, g->bias, false) +
+           2 * SPACE * XFORM_FORCE_FLOP + 3 * PACKED + g->m * (ADD_FORCE + LEAF_UNDO);
 }
 static double absorb(const struct given *g)
 {
@@ -287,7 +292,8 @@ static void forward(const struct tree_walk *t, const struct kernel_spec *k,
     }
     const struct given given = {1.0 + loop_rows(t->model), true, bias, terms || loops,
                                 direct && !t->omit->base};
-    const struct given inside = {1, false, true, false, false}, outside = {1, true, false, false, false};
+    const struct given inside = {1, false, true, false, false},
+                       outside = {1, true, false, false, false};
     meet(t, e);
     if (terms) e->flops += gyro(t);
     solution(t, &given, &given, false, e);

@@ -1,5 +1,5 @@
-/* forward_form.h - joint forces of a block and of the joints beside it, and the operator form of the
- * constraints (physics 4.8); private to forward*.c.
+/* forward_form.h - joint forces of a block and of the joints beside it, and the operator form of
+ * the constraints (physics 4.8); private to forward*.c.
  *
  *     y_i = Phi_i (F_i - X_{i+1} F_{i+1} - P_i + Fext_i),  z_i = y_i - X_i^T y_{i-1} - b_i
  *
@@ -23,18 +23,20 @@ void forward_begin_forces(struct forward *f, const real *x, bool gain);
 /* forward_add_reactions: F += W FS of own joints and of both neighbours, after a solution. */
 void forward_add_reactions(struct forward *f);
 
-/* forward_body_acceleration: y (SPACE) = Phi_i (force - X_{i+1} next + gain); next, gain NULL: none. */
+/* forward_body_acceleration: y (SPACE) = Phi_i (force - X_{i+1} next + gain); next, gain NULL:
+ * none. */
 void forward_body_acceleration(struct forward *f, int i, const real *force, const real *next,
                                const real *gain, real *y);
 
 /* forward_force_above: F (SPACE) of joint i + 1; NULL: there is none. */
 const real *forward_force_above(struct forward *f, int i);
 
-/* forward_operator_form: z of own bodies into f->z; without `terms` the velocity terms, the external
- * forces and the base are left out. Notes the residual. */
+/* forward_operator_form: z of own bodies into f->z; without `terms` the velocity terms, the
+ * external forces and the base are left out. Notes the residual. */
 void forward_operator_form(struct forward *f, bool terms);
 
-/* forward_right_hand_side: r = - what the joints' rows are violated by, into the rows of f->blocks. */
+/* forward_right_hand_side: r = - what the joints' rows are violated by, into the rows of
+ * f->blocks. */
 void forward_right_hand_side(struct forward *f);
 
 #endif

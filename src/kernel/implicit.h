@@ -1,8 +1,9 @@
 /* implicit.h - joint springs that a time step treats linearly implicitly (physics 9.0).
  *
- * With spring forces at the end of the step, tau = tau_0 - s u', s = h c + h^2 k, a joint's acceleration is
- * u' = s^-1 (tau_0 - H^T F): its force is unknown in every component, its row of the constraint system is
- * Q^T D Q + s^-1 on the components along H, Q = [H W]. Elimination begins at F = H tau_0, where u' = 0. */
+ * With spring forces at the end of the step, tau = tau_0 - s u', s = h c + h^2 k, a joint's
+ * acceleration is u' = s^-1 (tau_0 - H^T F): its force is unknown in every component, its row of
+ * the constraint system is Q^T D Q + s^-1 on the components along H, Q = [H W]. Elimination begins
+ * at F = H tau_0, where u' = 0. */
 #ifndef KERNEL_IMPLICIT_H
 #define KERNEL_IMPLICIT_H
 
@@ -28,7 +29,8 @@ static inline real spring_resistance(const struct body *b, real h)
     return b->has_spring ? h * (b->damping + h * b->stiffness) : 0;
 }
 
-/* spring_force: tau_0 for tau (d), to which body_spring has added the forces at the begin of the step. */
+/* spring_force: tau_0 for tau (d), to which body_spring has added the forces at the begin of the
+ * step. */
 static inline void spring_force(const struct body *b, real h, const real *u, real *tau)
 {
     if (b->has_spring && h > 0) tau[0] -= h * b->stiffness * u[0];

@@ -1,8 +1,8 @@
-/* kernel.h - the texts of the built-in programs: what ranks execute, written against comm.h alone, in each precision
- * and space.
+/* kernel.h - the texts of the built-in programs: what ranks execute, written against comm.h alone,
+ * in each precision and space.
  *
- * A job is one evaluation shared by all ranks and read-only to them; their answers leave by comm_publish, which costs
- * no simulated time. */
+ * A job is one evaluation shared by all ranks and read-only to them; their answers leave by
+ * comm_publish, which costs no simulated time. */
 #ifndef KERNEL_KERNEL_H
 #define KERNEL_KERNEL_H
 
@@ -19,14 +19,16 @@
 struct model;
 struct state;
 
-/* What of the general program a job leaves out because it would only add zeros; all false: nothing. run decides it from
- * the scene (run/omission.h), the programs and the estimates only ask. */
+/* What of the general program a job leaves out because it would only add zeros; all false: nothing.
+ * run decides it from the scene (run/omission.h), the programs and the estimates only ask. */
 struct job_omit {
-    bool velocity; /* no joint moves, nor will: no velocities, bias accelerations and gyroscopic forces */
+    /* no joint moves, nor will: no velocities, bias accelerations and gyroscopic forces */
+    bool velocity;
     bool load;     /* nor are there external forces: bodies carry no loads of their own */
     bool base;     /* the base does not accelerate, and there is no gravity */
     bool turn;     /* the base's acceleration has no angular part */
-    bool bias;     /* velocity, load and base: the joint forces that the paper's formulation subtracts are zero */
+    /* velocity, load and base: the joint forces that the paper's formulation subtracts are zero */
+    bool bias;
     int fixed;     /* bodies on fixed joints that have become part of others in job->model */
 };
 
@@ -55,8 +57,8 @@ struct kernel_type {
     bool (*prepare)(struct kernel_job *job, struct arena *a, struct err *e);
 
     /* estimate: counts by formula, without running. */
-    void (*estimate)(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                     struct program_estimate *out);
+    void (*estimate)(const struct run_spec *spec, const struct model *model,
+                     const struct job_omit *omit, struct program_estimate *out);
 };
 
 /* kernel_find: a kernel of dynamics by name, in double precision; NULL when there is none. */
@@ -65,8 +67,8 @@ const struct kernel_type *kernel_find(const char *name);
 /* kernel_find_precision: the same kernel computing in `precision`. */
 const struct kernel_type *kernel_find_precision(const char *name, enum precision precision);
 
-/* kernel_find_planar: the same kernel in three components instead of six, for planar scenes (dynamics/planar.h). NULL
- * when there is none. */
+/* kernel_find_planar: the same kernel in three components instead of six, for planar scenes
+ * (dynamics/planar.h). NULL when there is none. */
 const struct kernel_type *kernel_find_planar(const char *name, enum precision precision);
 
 #endif

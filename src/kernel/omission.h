@@ -1,8 +1,9 @@
-/* omission.h - what the programs of multibody dynamics leave out because a scene does not need it (physics of rest,
- * planes and missing loads), and how to compute it all the same.
+/* omission.h - what the programs of multibody dynamics leave out because a scene does not need it
+ * (physics of rest, planes and missing loads), and how to compute it all the same.
  *
- * An omission is exact when every number of the answer (tau, q'', q and q' at the end, loop forces) is the same with it
- * and without. A bounded one changes the answer by less than its bound, relative to the answer's largest number.
+ * An omission is exact when every number of the answer (tau, q'', q and q' at the end, loop forces)
+ * is the same with it and without. A bounded one changes the answer by less than its bound,
+ * relative to the answer's largest number.
  * --keep-all puts all of them back (KEEP_* of spec/run_spec.h). */
 #ifndef KERNEL_OMISSION_H
 #define KERNEL_OMISSION_H
@@ -12,30 +13,38 @@
 #include "program/program.h"
 #include "spec/run_spec.h"
 
-/* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on fixed joints become
- * part of others where that leaves enough for all ranks; what is put back is added. Changes *m and *s, replacing them
- * by new ones in `a` when bodies merge. Returns how many did. */
-int omission_scene(const struct run_spec *spec, struct model **m, struct state **s, struct arena *a);
+/* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on
+ * fixed joints become part of others where that leaves enough for all ranks; what is put back is
+ * added. Changes *m and *s, replacing them by new ones in `a` when bodies merge. Returns how many
+ * did. */
+int omission_scene(const struct run_spec *spec, struct model **m, struct state **s,
+                   struct arena *a);
 
-/* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies omission_scene will merge of
- * `nbody`, `movable` of which are on joints that move. */
+/* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies
+ * omission_scene will merge of `nbody`, `movable` of which are on joints that move. */
 int omission_movable(const struct model *m);
 int omission_mergeable(const struct run_spec *spec, int nbody, int movable);
 
-/* omission_kernel: the kernel that spec->kernel names, in the algebra that it asks for; auto: in three components where
- * the scene is planar and the operators are not dense, spec->keep obeyed. m, s NULL: kernels without a model. NULL
- * with *e set when there is no such kernel, or the scene is not planar as asked. */
-const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m, const struct state *s,
-                                          struct err *e);
+/* omission_kernel: the kernel that spec->kernel names, in the algebra that it asks for; auto: in
+ * three components where the scene is planar and the operators are not dense, spec->keep obeyed. m,
+ * s NULL: kernels without a model. NULL with *e set when there is no such kernel, or the scene is
+ * not planar as asked. */
+const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m,
+                                          const struct state *s, struct err *e);
 
-/* omission_job: what a kernel leaves out in a scene, spec->keep obeyed. m, s NULL: kernels without a model. */
-struct job_omit omission_job(const struct run_spec *spec, const struct model *m, const struct state *s);
+/* omission_job: what a kernel leaves out in a scene, spec->keep obeyed. m, s NULL: kernels without
+ * a model. */
+struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
+                             const struct state *s);
 
 /* omission_list: what a program leaves out by its job's spec, model, state and omit. */
-void omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct left_out *l);
+void omission_list(const struct kernel_job *job, const struct kernel_type *kernel,
+                   struct left_out *l);
 
-/* omission_unused: settings that act nowhere because of what a model's file says, "key: reason" (constant texts), into
- * out (2); what the settings alone decide is in the fields' tables. Returns how many. */
-int omission_unused(const struct kernel_job *job, const struct kernel_type *kernel, const char **out);
+/* omission_unused: settings that act nowhere because of what a model's file says, "key: reason"
+ * (constant texts), into out (2); what the settings alone decide is in the fields' tables. Returns
+ * how many. */
+int omission_unused(const struct kernel_job *job, const struct kernel_type *kernel,
+                    const char **out);
 
 #endif

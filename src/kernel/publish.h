@@ -6,7 +6,8 @@
 #include "linalg/real.h"
 
 /* publish_reals: elements first .. first + n - 1 of an output. */
-static inline void publish_reals(struct comm *c, int output, int64_t first, int64_t n, const real *x)
+static inline void publish_reals(struct comm *c, int output, int64_t first, int64_t n,
+                                 const real *x)
 {
     enum { CHUNK = 64 };
     double rounded[CHUNK];

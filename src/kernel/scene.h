@@ -1,7 +1,9 @@
-/* scene.h - a model in its state with its serial answers, made once for all runs of a campaign that need it.
+/* scene.h - a model in its state with its serial answers, made once for all runs of a campaign that
+ * need it.
  *
- * Runs that differ in machine, network, processors or solver have the same scene: its model, the answers that theirs
- * are held against and the work of the serial codes. Sharing them changes no result. */
+ * Runs that differ in machine, network, processors or solver have the same scene: its model, the
+ * answers that theirs are held against and the work of the serial codes. Sharing them changes no
+ * result. */
 #ifndef KERNEL_SCENE_H
 #define KERNEL_SCENE_H
 
@@ -34,23 +36,22 @@ struct scene {
     struct serial_answer planar_inverse, planar_forward;     /* the same in three components */
 };
 
-
-/* scene_cache_create, scene_cache_destroy: a few scenes, the least recently used making room for new ones. The caller
- * owns it; destroy accepts NULL. */
+/* scene_cache_create, scene_cache_destroy: a few scenes, the least recently used making room for
+ * new ones. The caller owns it; destroy accepts NULL. */
 struct program_cache *scene_cache_create(void);
 void scene_cache_destroy(struct program_cache *cache);
 
-/* scene_take: the scene that `spec` asks for, from the cache or made now; borrowed until the next call. NULL with *e
- * set when it cannot be built. */
+/* scene_take: the scene that `spec` asks for, from the cache or made now; borrowed until the next
+ * call. NULL with *e set when it cannot be built. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e);
 
-/* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler. scene_forward: accelerations by
- * `method`. Computed at the first call. */
+/* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler.
+ * scene_forward: accelerations by `method`. Computed at the first call. */
 const struct serial_answer *scene_inverse(struct scene *s);
 const struct serial_answer *scene_forward(struct scene *s, enum forward_method method);
 
-/* scene_planar_inverse, scene_planar_forward: by recursive Newton-Euler and by articulated bodies of three components,
- * for scenes that are planar (dynamics/planar.h). */
+/* scene_planar_inverse, scene_planar_forward: by recursive Newton-Euler and by articulated bodies
+ * of three components, for scenes that are planar (dynamics/planar.h). */
 const struct serial_answer *scene_planar_inverse(struct scene *s);
 const struct serial_answer *scene_planar_forward(struct scene *s);
 

@@ -1,7 +1,8 @@
-/* tree.h - one rank's piece of a tree, and parallel Newton-Euler on it by pointer jumping (physics 6.4).
+/* tree.h - one rank's piece of a tree, and parallel Newton-Euler on it by pointer jumping
+ * (physics 6.4).
  *
- * Sweeps inside the piece; between pieces, the state of the anchor bodies is a recurrence along each piece's ancestors,
- * and jumping over 2^j of them at a time takes ceil(log2 depth) steps. */
+ * Sweeps inside the piece; between pieces, the state of the anchor bodies is a recurrence along
+ * each piece's ancestors, and jumping over 2^j of them at a time takes ceil(log2 depth) steps. */
 #ifndef KERNEL_TREE_H
 #define KERNEL_TREE_H
 
@@ -34,7 +35,8 @@ struct tree {
     real *q, *u;
     struct body_pose *pose;
     real *h, *v, *a, *f, *b; /* (SPACE) joint velocity; velocity, acceleration, force; bias */
-    real *level;             /* composites of the anchor, (XFORM_NUMBERS) each: to the anchors 2^j pieces down */
+    /* composites of the anchor, (XFORM_NUMBERS) each: to the anchors 2^j pieces down */
+    real *level;
     struct xform *base_pose; /* poses: anchor to base */
     real *path;              /* (XFORM_NUMBERS) body to the piece's anchor */
     real *in;                /* messages: a pair (transform, vector) */
@@ -46,8 +48,8 @@ struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena 
 /* tree_carve: room for rank `rank`. */
 void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank);
 
-/* tree_load, tree_place, tree_velocity, tree_bias, tree_acceleration, tree_force: as those of chain.h; `more` (own
- * bodies x SPACE) is added to the bodies' forces, NULL: nothing. */
+/* tree_load, tree_place, tree_velocity, tree_bias, tree_acceleration, tree_force: as those of
+ * chain.h; `more` (own bodies x SPACE) is added to the bodies' forces, NULL: nothing. */
 void tree_load(struct tree *t);
 void tree_place(struct tree *t);
 void tree_velocity(struct tree *t);
@@ -61,7 +63,8 @@ void tree_gyro(struct tree *t, int l, real *f);
 /* tree_base_pose: own body l to base; needs `poses` and tree_velocity. */
 void tree_base_pose(struct tree *t, int l, struct xform *x);
 
-/* tree_parent: index of own body l's parent among own bodies; -1: it is the anchor (or the base). */
+/* tree_parent: index of own body l's parent among own bodies; -1: it is the anchor (or the
+ * base). */
 static inline int tree_parent(const struct tree *t, int l)
 {
     const int p = t->shared->body[t->bodies[l]].parent;
@@ -69,7 +72,10 @@ static inline int tree_parent(const struct tree *t, int l)
 }
 
 /* tree_body: constants of own body l. */
-static inline const struct body *tree_body(const struct tree *t, int l) { return &t->shared->body[t->bodies[l]]; }
+static inline const struct body *tree_body(const struct tree *t, int l)
+{
+    return &t->shared->body[t->bodies[l]];
+}
 
 /* tree_at: element l of an array of 6-vectors. */
 static inline real *tree_at(real *array, int l) { return array + SPACE * l; }

@@ -1,9 +1,10 @@
-/* tree_plan.h - what follows from a tree's topology alone: who owns which bodies, and in which order the constraint
- * force system is contracted (physics 6.3).
+/* tree_plan.h - what follows from a tree's topology alone: who owns which bodies, and in which
+ * order the constraint force system is contracted (physics 6.3).
  *
- * A piece is a set of sibling subtrees, less what was cut off below, hanging at one anchor body: at most P pieces of
- * fewer than 2 ceil(n/P) + 1 bodies each, one per rank. Contraction alternates raking leaves into their parents and
- * merging a compound with its only child (Miller and Reif 1985), O(log n) rounds. */
+ * A piece is a set of sibling subtrees, less what was cut off below, hanging at one anchor body: at
+ * most P pieces of fewer than 2 ceil(n/P) + 1 bodies each, one per rank. Contraction alternates
+ * raking leaves into their parents and merging a compound with its only child (Miller and Reif
+ * 1985), O(log n) rounds. */
 #ifndef KERNEL_TREE_PLAN_H
 #define KERNEL_TREE_PLAN_H
 
@@ -35,7 +36,8 @@ struct tree_plan {
     int nlevel;                     /* ceil(log2(depth of pieces)) */
     int *ancestor;                  /* (nlevel x npiece) 2^j-th ancestor piece, -1: none */
     struct tree_lists kids;         /* pieces hanging at a piece's bodies */
-    struct tree_lists *descendants; /* (nlevel) pieces c with ancestor_j(c) = k, for those k that have an anchor body */
+    /* (nlevel) pieces c with ancestor_j(c) = k, for those k that have an anchor body */
+    struct tree_lists *descendants;
     int nop, nround;
     struct tree_op *op; /* in order */
     int *absorbed;
@@ -47,6 +49,9 @@ struct tree_plan {
 struct tree_plan *tree_plan_make(const struct model *m, int nrank, struct arena *a);
 
 /* tree_plan_ancestor: 2^j-th ancestor of piece k; -1: none. */
-static inline int tree_plan_ancestor(const struct tree_plan *p, int j, int k) { return p->ancestor[j * p->npiece + k]; }
+static inline int tree_plan_ancestor(const struct tree_plan *p, int j, int k)
+{
+    return p->ancestor[j * p->npiece + k];
+}
 
 #endif

@@ -1,7 +1,9 @@
-/* angle.h - sine and cosine with the same bits on every host: no run-time choice of operations as in a libm.
+/* angle.h - sine and cosine with the same bits on every host: no run-time choice of operations as
+ * in a libm.
  *
- * Double: reduction by pi/2 in three pieces (Cody and Waite), then the minimax polynomials of Sun's fdlibm; errors
- * under 1 ulp. Angles beyond ANGLE_REDUCED go to the C library. Other precisions use their library. */
+ * Double: reduction by pi/2 in three pieces (Cody and Waite), then the minimax polynomials of Sun's
+ * fdlibm; errors under 1 ulp. Angles beyond ANGLE_REDUCED go to the C library. Other precisions use
+ * their library. */
 #ifndef LINALG_ANGLE_H
 #define LINALG_ANGLE_H
 
@@ -11,7 +13,8 @@
 
 #if REAL_BITS == 64
 
-/* angle_sincos_core: branch-free, for |x| <= ANGLE_REDUCED, so that a loop over angles can be vectorised. */
+/* angle_sincos_core: branch-free, for |x| <= ANGLE_REDUCED, so that a loop over angles can be
+ * vectorised. */
 static inline void angle_sincos_core(double x, double *s, double *c)
 {
     const double shifter = 6755399441055744.0; /* 1.5 * 2^52: adding it rounds to an integer */
@@ -27,11 +30,12 @@ static inline void angle_sincos_core(double x, double *s, double *c)
                     z * (2.75573137070700676789e-06 +
                          z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
     double sine = y0 - ((z * (0.5 * y1 - v * p) - y1) - v * -1.66666666666666324348e-01);
-    double q = z * (4.16666666666666019037e-02 +
-                    z * (-1.38888888888741095749e-03 +
-                         z * (2.48015872894767294178e-05 +
-                              z * (-2.75573143513906633035e-07 +
-                                   z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    double q =
+        z * (4.16666666666666019037e-02 +
+             z * (-1.38888888888741095749e-03 +
+                  z * (2.48015872894767294178e-05 +
+                       z * (-2.75573143513906633035e-07 +
+                            z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
     double half = 0.5 * z, one = 1.0 - half;
     double cosine = one + (((1.0 - one) - half) + (z * q - y0 * y1));
     /* quadrant n mod 4: swap for odd n; signs by arithmetic, exactly: n = 4 k + m, m in -2 .. 2 */
@@ -58,8 +62,8 @@ static inline void angle_sincos(real x, real *s, real *c)
     *c = real_cos(x);
 }
 
-/* angle_sincos_batch: s[i], c[i] of x[i], i = 0 .. n-1, in packed registers, the widest that the host has;
- * the same bits as angle_sincos of each. s, c may not overlap x. */
+/* angle_sincos_batch: s[i], c[i] of x[i], i = 0 .. n-1, in packed registers, the widest that the
+ * host has; the same bits as angle_sincos of each. s, c may not overlap x. */
 void angle_sincos_batch(int n, const real *restrict x, real *restrict s, real *restrict c);
 
 #endif

@@ -181,8 +181,8 @@ static void project(int c, int n, int first, int width, int m, const real *Y, co
         }
 }
 
-void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const real *r, real *y, real *v_a, real *v_b,
-                      struct work *w)
+void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const real *r, real *y,
+                      real *v_a, real *v_b, struct work *w)
 {
     const int width = nl + nu;
     const real *Y = factor + packed_size(c);

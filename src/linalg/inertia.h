@@ -1,4 +1,5 @@
-/* inertia.h - inertias of rigid bodies and symmetric 6x6 matrices, inline, in the build's precision.
+/* inertia.h - inertias of rigid bodies and symmetric 6x6 matrices, inline, in the build's
+ * precision.
  *
  * Conventions as in spatial.h; accelerations are classical (of the frame's origin). */
 #ifndef LINALG_INERTIA_H
@@ -6,12 +7,14 @@
 
 #include "linalg/spatial.h"
 
-/* A rigid body about its frame's origin: mass, first moment m s, rotational inertia J - m s~ s~ (vec3.h order). */
+/* A rigid body about its frame's origin: mass, first moment m s, rotational inertia J - m s~ s~
+ * (vec3.h order). */
 struct inertia {
     real m, ms[3], j[6];
 };
 
-/* A symmetric 6x6 [a b; b^T c]: articulated inertias, inverse inertias. 21 numbers, symmetric by construction. */
+/* A symmetric 6x6 [a b; b^T c]: articulated inertias, inverse inertias. 21 numbers, symmetric by
+ * construction. */
 struct sym6 {
     real a[6]; /* angular-angular, symmetric */
     real b[9]; /* (3 x 3) angular-linear */
@@ -26,7 +29,8 @@ enum {
     SYM6_MOVE_FLOP = 324 /* 75 + 75 + 90 rotate, 36 + 48 shift */
 };
 
-/* inertia_mul: f = I v for a rigid body: n = J w + ms x v, f = m v + w x ms; 42 flops. f may not be v. */
+/* inertia_mul: f = I v for a rigid body: n = J w + ms x v, f = m v + w x ms; 42 flops. f may not be
+ * v. */
 static inline void inertia_mul(real *f, const struct inertia *in, const real *v)
 {
     sym3_mul_vec(f, in->j, v);
@@ -35,7 +39,8 @@ static inline void inertia_mul(real *f, const struct inertia *in, const real *v)
     vec3_cross_add(f + 3, v, in->ms);
 }
 
-/* inertia_gyro: velocity-dependent force with classical acceleration: P = [w x J w; w x (w x ms)]; 42 flops.
+/* inertia_gyro: velocity-dependent force with classical acceleration: P = [w x J w; w x (w x ms)];
+ * 42 flops.
  *
  *   w   in   (3) angular velocity
  *   f   out  (6) */
@@ -52,7 +57,8 @@ static inline void inertia_gyro(real *f, const struct inertia *in, const real *w
 enum { INERTIA_MOVE_FLOP = 123, INERTIA_ADD_FLOP = 10 };
 static inline void inertia_move(struct inertia *y, const struct xform *x, const struct inertia *in)
 {
-    /* J' = r J r^T - [h~ p~ + p~ h~] - m p~ p~ with h = r ms; written through g = 2 h + m p: p~ g~ symmetrised. */
+    /* J' = r J r^T - [h~ p~ + p~ h~] - m p~ p~ with h = r ms; written through g = 2 h + m p: p~ g~
+     * symmetrised. */
     real h[3], g[3];
     const real *p = x->p;
     sym3_rotate(y->j, x->r, in->j);
@@ -63,7 +69,8 @@ static inline void inertia_move(struct inertia *y, const struct xform *x, const 
         y->ms[i] = h[i] + mp;
         g[i] = h[i] + h[i] + mp;
     }
-    real hxy = h[0] * p[1] + y->ms[1] * p[0], hxz = h[0] * p[2] + y->ms[2] * p[0], hyz = h[1] * p[2] + y->ms[2] * p[1];
+    real hxy = h[0] * p[1] + y->ms[1] * p[0], hxz = h[0] * p[2] + y->ms[2] * p[0],
+         hyz = h[1] * p[2] + y->ms[2] * p[1];
     real xx = p[0] * g[0], yy = p[1] * g[1], zz = p[2] * g[2];
     y->j[0] += yy + zz, y->j[3] += xx + zz, y->j[5] += xx + yy;
     y->j[1] -= hxy, y->j[2] -= hxz, y->j[4] -= hyz;

@@ -1,9 +1,9 @@
 /* planar.h - 3-vectors of the plane and its transforms, inline: what spatial.h is for space.
  *
- * A vector is [about the normal; x, y], components in one body's planar frame, taken at that frame's origin. A
- * transform is a turn by the angle with cosine c and sine s, and p from the parent's origin to the child's, in parent
- * components. Names and contracts are those of spatial.h, so that programs written for both spaces compile with either.
- */
+ * A vector is [about the normal; x, y], components in one body's planar frame, taken at that
+ * frame's origin. A transform is a turn by the angle with cosine c and sine s, and p from the
+ * parent's origin to the child's, in parent components. Names and contracts are those of spatial.h,
+ * so that programs written for both spaces compile with either. */
 #ifndef LINALG_PLANAR_H
 #define LINALG_PLANAR_H
 
@@ -27,15 +27,22 @@ enum {
     SCREW_AXPY_FLOP = 6
 };
 
-/* screw_copy: y = x. screw_zero: y = 0. screw_add: y += x. screw_sub: y -= x. screw_axpy: y += a x. */
+/* screw_copy: y = x. screw_zero: y = 0. screw_add: y += x. screw_sub: y -= x. screw_axpy: y += a
+ * x. */
 static inline void screw_copy(real *y, const real *x) { y[0] = x[0], y[1] = x[1], y[2] = x[2]; }
 static inline void screw_zero(real *y) { y[0] = y[1] = y[2] = 0; }
 static inline void screw_add(real *y, const real *x) { y[0] += x[0], y[1] += x[1], y[2] += x[2]; }
 static inline void screw_sub(real *y, const real *x) { y[0] -= x[0], y[1] -= x[1], y[2] -= x[2]; }
-static inline void screw_axpy(real *y, real a, const real *x) { y[0] += a * x[0], y[1] += a * x[1], y[2] += a * x[2]; }
+static inline void screw_axpy(real *y, real a, const real *x)
+{
+    y[0] += a * x[0], y[1] += a * x[1], y[2] += a * x[2];
+}
 
 /* screw_dot: x^T y. */
-static inline real screw_dot(const real *x, const real *y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
+static inline real screw_dot(const real *x, const real *y)
+{
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
 
 /* xform_identity: no turn, no shift. */
 static inline void xform_identity(struct xform *x) { *x = (struct xform){.c = 1}; }
@@ -49,7 +56,8 @@ static inline void xform_force(real *y, const struct xform *x, const real *f)
     y[2] = fy;
 }
 
-/* xform_motion: y = X^T v, parent -> child: w' = w, v' = r^T (v + w x p); 4 + 6 flops. y may be v. */
+/* xform_motion: y = X^T v, parent -> child: w' = w, v' = r^T (v + w x p); 4 + 6 flops. y may be
+ * v. */
 static inline void xform_motion(real *y, const struct xform *x, const real *v)
 {
     const real vx = v[1] - v[0] * x->p[1], vy = v[2] + v[0] * x->p[0];

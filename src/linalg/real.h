@@ -1,10 +1,12 @@
-/* real.h - the scalar of the numerics: one source, three precisions, chosen by the build of each archive.
+/* real.h - the scalar of the numerics: one source, three precisions, chosen by the build of each
+ * archive.
  *
- * Files of linalg, dynamics and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128, some of
- * them twice more for the plane (SPACE, space.h). Their public names carry the precision and the space: the build makes
- * real_names.h from the headers (real_names.awk), so that the plain name always means "in this file's precision and
- * space". Without REAL_BITS it is double, without SPACE it is six components. Answers of another precision are reached
- * through const tables of functions (dynamics_table.h, kernel.h). */
+ * Files of linalg, dynamics and kernel that compute are compiled three times, with REAL_BITS 32, 64
+ * and 128, some of them twice more for the plane (SPACE, space.h). Their public names carry the
+ * precision and the space: the build makes real_names.h from the headers (real_names.awk), so that
+ * the plain name always means "in this file's precision and space". Without REAL_BITS it is double,
+ * without SPACE it is six components. Answers of another precision are reached through const tables
+ * of functions (dynamics_table.h, kernel.h). */
 #ifndef LINALG_REAL_H
 #define LINALG_REAL_H
 
@@ -65,7 +67,8 @@ __float128 expq(__float128);
 
 #include "linalg/real_names.h" /* made by the build */
 
-/* A build in which every operation of the source is executed as often as it is written, for tests that count them. */
+/* A build in which every operation of the source is executed as often as it is written, for tests
+ * that count them. */
 #ifdef REAL_COUNTED
 #ifdef __clang__
 #pragma clang optimize off

@@ -1,4 +1,5 @@
-/* screw.h - vectors and transforms of the build's space: those of spatial.h or those of planar.h. */
+/* screw.h - vectors and transforms of the build's space: those of spatial.h or those of
+ * planar.h. */
 #ifndef LINALG_SCREW_H
 #define LINALG_SCREW_H
 

@@ -1,7 +1,9 @@
-/* space.h - the algebra of the programs: one source, two spaces, chosen by the build of each archive.
+/* space.h - the algebra of the programs: one source, two spaces, chosen by the build of each
+ * archive.
  *
- * Screws, the motions and forces of bodies, have six components in space and three in a plane. Files of room kernel and
- * what they use of dynamics are compiled with SPACE 6 and SPACE 3 (real.h). */
+ * Screws, the motions and forces of bodies, have six components in space and three in a plane.
+ * Files of room kernel and what they use of dynamics are compiled with SPACE 6 and SPACE 3
+ * (real.h). */
 #ifndef LINALG_SPACE_H
 #define LINALG_SPACE_H
 

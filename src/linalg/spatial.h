@@ -1,8 +1,10 @@
-/* spatial.h - 6-vectors and structured transforms, inline, in the build's precision; inertias are in inertia.h.
+/* spatial.h - 6-vectors and structured transforms, inline, in the build's precision; inertias are
+ * in inertia.h.
  *
- * A spatial vector is [angular; linear], components in one body's frame, taken at that frame's origin. A transform is
- * a pair (r, p): r turns child components into parent components, p runs from the parent's origin to the child's, in
- * parent components. It moves forces child -> parent; its transpose moves motions parent -> child. The constants
+ * A spatial vector is [angular; linear], components in one body's frame, taken at that frame's
+ * origin. A transform is a pair (r, p): r turns child components into parent components, p runs
+ * from the parent's origin to the child's, in parent components. It moves forces child -> parent;
+ * its transpose moves motions parent -> child. The constants
  * *_FLOP are what each function executes (additions and multiplications). */
 #ifndef LINALG_SPATIAL_H
 #define LINALG_SPATIAL_H
@@ -29,7 +31,8 @@ enum {
     SCREW_AXPY_FLOP = 12
 };
 
-/* screw_copy: y = x. screw_zero: y = 0. screw_add: y += x. screw_sub: y -= x. screw_axpy: y += a x (12 flops). */
+/* screw_copy: y = x. screw_zero: y = 0. screw_add: y += x. screw_sub: y -= x. screw_axpy: y += a x
+ * (12 flops). */
 static inline void screw_copy(real *y, const real *x)
 {
     for (int i = 0; i < 6; i++) y[i] = x[i];
@@ -64,7 +67,8 @@ static inline void xform_identity(struct xform *x)
     vec3_set(x->p, 0, 0, 0);
 }
 
-/* xform_force: y = X f, child -> parent: f' = r f, n' = r n + p x f' (physics of screws; 42 flops). y may be f. */
+/* xform_force: y = X f, child -> parent: f' = r f, n' = r n + p x f' (physics of screws; 42 flops).
+ * y may be f. */
 static inline void xform_force(real *y, const struct xform *x, const real *f)
 {
     real g[3], n[3];
@@ -75,7 +79,8 @@ static inline void xform_force(real *y, const struct xform *x, const real *f)
     vec3_copy(y + 3, g);
 }
 
-/* xform_motion: y = X^T v, parent -> child: w' = r^T w, v' = r^T (v + w x p); 42 flops. y may be v. */
+/* xform_motion: y = X^T v, parent -> child: w' = r^T w, v' = r^T (v + w x p); 42 flops. y may be
+ * v. */
 static inline void xform_motion(real *y, const struct xform *x, const real *v)
 {
     real t[3];
@@ -94,7 +99,8 @@ static inline void xform_slide(real *y, const struct xform *x, const real *v)
     vec3_copy(y + 3, t);
 }
 
-/* xform_compose: c = a o b, i.e. X_c = X_a X_b: (ra rb, pa + ra pb); 63 flops. c may be neither a nor b. */
+/* xform_compose: c = a o b, i.e. X_c = X_a X_b: (ra rb, pa + ra pb); 63 flops. c may be neither a
+ * nor b. */
 static inline void xform_compose(struct xform *c, const struct xform *a, const struct xform *b)
 {
     mat3_mul(c->r, a->r, b->r);
@@ -102,7 +108,8 @@ static inline void xform_compose(struct xform *c, const struct xform *a, const s
     vec3_add(c->p, a->p);
 }
 
-/* xform_factors: zeroed `shift`, `turn` (6 x 6) become those whose product is X as a matrix: [U p~; 0 U] [r 0; 0 r]. */
+/* xform_factors: zeroed `shift`, `turn` (6 x 6) become those whose product is X as a matrix: [U p~;
+ * 0 U] [r 0; 0 r]. */
 static inline void xform_factors(const struct xform *x, real *shift, real *turn)
 {
     for (int i = 0; i < 6; i++) shift[7 * i] = 1;

@@ -1,7 +1,8 @@
-/* vec3.h - vectors of three, 3x3 matrices (row-major) and symmetric 3x3 matrices (six numbers) of `real`.
+/* vec3.h - vectors of three, 3x3 matrices (row-major) and symmetric 3x3 matrices (six numbers) of
+ * `real`.
  *
- * A symmetric matrix is stored as xx, xy, xz, yy, yz, zz. Outputs come first and may not overlap inputs unless the
- * comment allows it. Each operation's flops are in the constant under it. */
+ * A symmetric matrix is stored as xx, xy, xz, yy, yz, zz. Outputs come first and may not overlap
+ * inputs unless the comment allows it. Each operation's flops are in the constant under it. */
 #ifndef LINALG_VEC3_H
 #define LINALG_VEC3_H
 
@@ -15,16 +16,23 @@ static inline void vec3_copy(real *y, const real *x) { y[0] = x[0], y[1] = x[1],
 enum { VEC3_ADD_FLOP = 3, VEC3_SCALE_FLOP = 3, VEC3_DOT_FLOP = 5, VEC3_CROSS_FLOP = 9 };
 static inline void vec3_add(real *y, const real *x) { y[0] += x[0], y[1] += x[1], y[2] += x[2]; }
 static inline void vec3_sub(real *y, const real *x) { y[0] -= x[0], y[1] -= x[1], y[2] -= x[2]; }
-static inline void vec3_scale(real *y, real a, const real *x) { y[0] = a * x[0], y[1] = a * x[1], y[2] = a * x[2]; }
+static inline void vec3_scale(real *y, real a, const real *x)
+{
+    y[0] = a * x[0], y[1] = a * x[1], y[2] = a * x[2];
+}
 
 /* vec3_dot: x . y. vec3_norm: |x|. */
-static inline real vec3_dot(const real *x, const real *y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
+static inline real vec3_dot(const real *x, const real *y)
+{
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
 static inline real vec3_norm(const real *x) { return real_sqrt(vec3_dot(x, x)); }
 
 /* vec3_cross: z = x x y; z may be x or y. */
 static inline void vec3_cross(real *z, const real *x, const real *y)
 {
-    real a = x[1] * y[2] - x[2] * y[1], b = x[2] * y[0] - x[0] * y[2], c = x[0] * y[1] - x[1] * y[0];
+    real a = x[1] * y[2] - x[2] * y[1], b = x[2] * y[0] - x[0] * y[2],
+         c = x[0] * y[1] - x[1] * y[0];
     vec3_set(z, a, b, c);
 }
 
@@ -43,7 +51,8 @@ static inline void vec3_cross_sub(real *z, const real *x, const real *y)
     z[2] -= x[0] * y[1] - x[1] * y[0];
 }
 
-/* mat3_mul_vec: y = M x; y may be x. mat3_mul_vec_transposed: y = M^T x; y may be x. 15 flops each. */
+/* mat3_mul_vec: y = M x; y may be x. mat3_mul_vec_transposed: y = M^T x; y may be x. 15 flops
+ * each. */
 enum { MAT3_VEC_FLOP = 15, MAT3_MUL_FLOP = 45 };
 static inline void mat3_mul_vec(real *y, const real *m, const real *x)
 {
@@ -60,7 +69,8 @@ static inline void mat3_mul_vec_transposed(real *y, const real *m, const real *x
     vec3_set(y, a, b, c);
 }
 
-/* mat3_mul: C = A B. mat3_mul_transposed: C = A B^T. mat3_transposed_mul: C = A^T B. 45 flops each. */
+/* mat3_mul: C = A B. mat3_mul_transposed: C = A B^T. mat3_transposed_mul: C = A^T B. 45 flops
+ * each. */
 static inline void mat3_mul(real *c, const real *a, const real *b)
 {
     for (int i = 0; i < 3; i++)
@@ -71,12 +81,14 @@ static inline void mat3_mul_transposed(real *c, const real *a, const real *b)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            c[3 * i + j] = a[3 * i] * b[3 * j] + a[3 * i + 1] * b[3 * j + 1] + a[3 * i + 2] * b[3 * j + 2];
+            c[3 * i + j] =
+                a[3 * i] * b[3 * j] + a[3 * i + 1] * b[3 * j + 1] + a[3 * i + 2] * b[3 * j + 2];
 }
 static inline void mat3_transposed_mul(real *c, const real *a, const real *b)
 {
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) c[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
+        for (int j = 0; j < 3; j++)
+            c[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
 }
 
 /* mat3_turn_z: r = E Rz for the turn's sine and cosine; MAT3_TURN_FLOP. */

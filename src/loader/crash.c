@@ -111,7 +111,8 @@ static bool is_stack_overflow(const siginfo_t *info, const struct loader_instanc
 {
     enum { NEAR = 1 << 20, MOST_DEPTH = 16 * 1024 };
     /* Of small stacks the lower quarter is deep. */
-    const uintptr_t small = (uintptr_t)stack_bytes / 4 * 3, depth = small < MOST_DEPTH ? small : MOST_DEPTH;
+    const uintptr_t small = (uintptr_t)stack_bytes / 4 * 3,
+                    depth = small < MOST_DEPTH ? small : MOST_DEPTH;
     const uintptr_t at = (uintptr_t)info->si_addr;
     const char *file;
     uint64_t in_file;

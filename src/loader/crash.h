@@ -47,8 +47,8 @@ void crash_record_destroy(struct crash_record *r);
 bool crash_guard_begin(struct crash_record *record, struct err *e);
 void crash_guard_end(void);
 
-/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks of `stack_bytes` each. Without a
- * guard: no effect. */
+/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks of `stack_bytes`
+ * each. Without a guard: no effect. */
 void crash_watch(const struct loader_template *t, int64_t stack_bytes);
 
 /* crash_limit: end the process when it takes `seconds` of processor time from now on; 0: no limit.

@@ -31,8 +31,8 @@ static void describe(const struct crash_record *r, char *buffer, size_t size)
     switch (atomic_load(&r->kind)) {
     case CRASH_STACK:
         snprintf(buffer, size,
-                 "stack overflow (address 0x%llx) of a stack of %lld KiB, which .stack_bytes of a kernel "
-                 "makes larger,",
+                 "stack overflow (address 0x%llx) of a stack of %lld KiB, which .stack_bytes of a "
+                 "kernel makes larger,",
                  at, (long long)r->stack_bytes / 1024);
         return;
     case CRASH_HOST_TIME:
@@ -71,8 +71,8 @@ static void describe(const struct crash_record *r, char *buffer, size_t size)
     }
 }
 
-/* The innermost place that has a line; those without are of libraries. None has one: the innermost.
- */
+/* The innermost place that has a line; those without are of libraries. None has one: the
+ * innermost. */
 static void place_of(const struct crash_record *r, char *buffer, size_t size)
 {
     char text[480], first[480] = "";

@@ -27,7 +27,8 @@ static bool read_bytes(struct elf_file *f, struct err *e)
     struct stat s;
     FILE *in = text_open_file(f->path, e);
     if (!in) return false;
-    bool ok = fstat(fileno(in), &s) == 0 && size_in_memory((size_t)s.st_size, f->path, 0, "the file", e);
+    bool ok =
+        fstat(fileno(in), &s) == 0 && size_in_memory((size_t)s.st_size, f->path, 0, "the file", e);
     if (ok) {
         f->size = (size_t)s.st_size;
         f->bytes = memory_take(f->size + 1, 1);

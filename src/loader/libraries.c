@@ -21,8 +21,8 @@ static const char *const of_the_host[] = {"libc.so.6",   "libm.so.6",  "ld-linux
 /* Where the system keeps libraries, besides what the file and LD_LIBRARY_PATH name; Debian's and
  * Fedora's folders. */
 static const char system_folders[] =
-    "/lib/x86_64-linux-gnu:/usr/lib/x86_64-linux-gnu:/lib64:/usr/lib64:/usr/local/lib:"
-    "/lib:/usr/lib";
+    "/lib/x86_64-linux-gnu:/usr/lib/x86_64-linux-gnu:/lib64:/usr/lib64:"
+    "/usr/local/lib:/lib:/usr/lib";
 
 /* Compared whole, with the number of the interface: another libc.so would be another library. */
 bool library_of_host(const char *name)

@@ -14,7 +14,7 @@ struct placement {
 
 /* placement_create: place `nrank` ranks on the machine's processors, memory from `a`.
  * Returns false with ERR_CONFIG when there are more ranks than processors or a list is wrong. */
-bool placement_create(struct placement *p, const struct machine_spec *m, const struct topology *t, int nrank,
-                      struct arena *a, struct err *e);
+bool placement_create(struct placement *p, const struct machine_spec *m, const struct topology *t,
+                      int nrank, struct arena *a, struct err *e);
 
 #endif

@@ -31,10 +31,9 @@ static bool dragonfly_create(struct topology *t, struct arena *a, struct err *e)
     struct dragonfly *g = TAKE(a, 1, struct dragonfly);
     if (p < 1 || dims[1] < 1 || dims[2] < 1 || groups < 2 || groups > most)
         return err_set(e, ERR_CONFIG,
-                       "topology dragonfly: {%d nodes/router, %d routers/group, "
-                       "%d global links/router, %d groups}; expected at least "
-                       "{1, 1, 1, 2} and no more groups than routers x global "
-                       "links + 1",
+                       "topology dragonfly: {%d nodes/router, %d routers/group, %d global "
+                       "links/router, %d groups}; expected at least {1, 1, 1, 2} and no more "
+                       "groups than routers x global links + 1",
                        dims[0], dims[1], dims[2], dims[3]);
     if (groups * dims[1] * (p + dims[1] + dims[2]) > INT32_MAX / 2)
         return err_set(e, ERR_CONFIG,

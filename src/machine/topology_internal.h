@@ -10,18 +10,21 @@ struct topology_type {
     const char *name;
     /* fill nrouter, nlink, nclass, nport, max_hops and state of *t from t->spec; memory from a */
     bool (*create)(struct topology *t, struct arena *a, struct err *e);
-    /* prepare the walk; set already: router, target, via (-1), and at: local number of the destination node */
+    /* prepare the walk; set already: router, target, via (-1), and at: local number of the
+     * destination node */
     void (*start)(const struct topology *t, uint64_t choice, struct route_cursor *c);
     /* one step into *h; false when the walk is over */
     bool (*next)(const struct topology *t, struct route_cursor *c, struct hop *h);
     int (*distance)(const struct topology *t, int from, int to); /* routers; NULL: walk and count */
     void (*ends)(const struct topology *t, int link, int *from, int *to, int *port);
-    int (*rate_dim)(const struct topology *t, int link); /* which dim_bandwidth holds for it; NULL: none */
+    /* which dim_bandwidth holds for it; NULL: none */
+    int (*rate_dim)(const struct topology *t, int link);
     double (*share)(const struct topology *t, int link); /* of the link rate; NULL: 1 */
 };
 
 /* Every family's own. */
-#define X(constant, word, stem, ndim, routers, traits) extern const struct topology_type topology_##stem;
+#define X(constant, word, stem, ndim, routers, traits)                                             \
+    extern const struct topology_type topology_##stem;
 TOPOLOGY_LIST(X)
 #undef X
 

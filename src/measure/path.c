@@ -23,6 +23,7 @@ struct path_log {
     int64_t n, capacity, nwork, work_capacity;
 };
 
+/* From the one list of causes. */
 const char *path_cause_word(enum path_cause cause)
 {
     static const char *const word[] = {
@@ -41,6 +42,7 @@ static void *grown(void *old, int64_t *capacity, size_t each)
     return p;
 }
 
+/* The first node is the start of the run, which has no node before it. */
 struct path_log *path_log_create(void)
 {
     struct path_log *p = memory_zeroed(1, sizeof *p);
@@ -60,13 +62,16 @@ void path_log_destroy(struct path_log *p)
 uint32_t path_add(struct path_log *p, uint32_t before, int64_t time, enum path_cause cause,
                   int rank, int stage, int resource, int64_t count)
 {
+    /* Causes come before effects, or the path would not end. */
     CHECK(before < p->n && p->node[before].time <= time);
     /* What takes no time binds nobody. */
     if (p->node[before].time == time) return before;
     if (p->n == p->capacity) p->node = grown(p->node, &p->capacity, sizeof *p->node);
+    /* numbers of nodes have 32 bits */
     CHECK(p->n < UINT32_MAX);
     /* Only now: growing may have moved the array. */
     const struct node *b = &p->node[before];
+    /* A rank or stage that is not given is that of the node before. */
     const struct node made = {.time = time,
                               .count = count,
                               .before = before,
@@ -94,6 +99,7 @@ int64_t path_time(const struct path_log *p, uint32_t node) { return p->node[node
 
 int64_t path_nodes(const struct path_log *p) { return p->n; }
 
+/* What is reserved, not what is used: it is what the process pays for. */
 int64_t path_bytes(const struct path_log *p)
 {
     return p->capacity * (int64_t)sizeof *p->node + p->work_capacity * (int64_t)sizeof *p->work;
@@ -116,6 +122,7 @@ struct path_step *path_trace(const struct path_log *p, uint32_t node, int64_t *n
     for (uint32_t k = node; k != 0; k = p->node[k].before) {
         const struct node *x = &p->node[k];
         struct path_step *s = &step[--count];
+        /* of computing, `count` is where its work lies; of the rest how often it was paid */
         const bool counted = x->cause == PATH_COMPUTE && x->count >= 0;
         *s = (struct path_step){.begin_ps = p->node[x->before].time,
                                 .end_ps = x->time,

@@ -1,7 +1,8 @@
-/* run_heartbeat.h - how far a run is while it runs, for people who wait: nothing here acts on a result.
+/* run_heartbeat.h - how far a run is while it runs, for people who wait: nothing here acts on a
+ * result.
  *
- * It may lie in memory that another process reads, so its members are atomic; each is right, all together may not be of
- * one moment. */
+ * It may lie in memory that another process reads, so its members are atomic; each is right, all
+ * together may not be of one moment. */
 #ifndef MEASURE_RUN_HEARTBEAT_H
 #define MEASURE_RUN_HEARTBEAT_H
 

@@ -1,6 +1,8 @@
-/* run_result.h - everything that one run tells us, as plain data: how it ended, times, counts, errors.
+/* run_result.h - everything that one run tells us, as plain data: how it ended, times, counts,
+ * errors.
  *
- * For every rank the times of all its stages add up exactly, in integer picoseconds, to the makespan. */
+ * For every rank the times of all its stages add up exactly, in integer picoseconds, to the
+ * makespan. */
 #ifndef MEASURE_RUN_RESULT_H
 #define MEASURE_RUN_RESULT_H
 
@@ -19,7 +21,8 @@ struct stage_time {
     int64_t compute_ps;
     int64_t send_ps;        /* send overhead, copies, back-pressure of the sender's software */
     int64_t recv_ps;        /* receive overhead and copies */
-    int64_t wait_ps;        /* waiting that an uncontended network would also have caused, and idling at the end */
+    /* waiting that an uncontended network would also have caused, and idling at the end */
+    int64_t wait_ps;
     int64_t contention_ps;  /* further waiting: links, ports, servers shared with other messages */
     int64_t messages;       /* sent */
     int64_t bytes;          /* sent */
@@ -70,11 +73,13 @@ struct omission {
 struct run_result {
     enum run_status status;
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
-    int refusal;            /* err_kind of a run that could not be made, which is RUN_FAILED; 0 (ERR_NONE): it was */
+    /* err_kind of a run that could not be made, which is RUN_FAILED; 0 (ERR_NONE): it was */
+    int refusal;
 
     bool job_broken;        /* it was shared by processes, and one of them does not answer */
 
-    int nbody, nu;             /* bodies and degrees of freedom of the model that was built; 0: no model */
+    /* bodies and degrees of freedom of the model that was built; 0: no model */
+    int nbody, nu;
     int64_t makespan_ps;
     int nrank, nstage;
     char stage_name[RUN_MAX_STAGES][24];
@@ -89,14 +94,19 @@ struct run_result {
     int nomission;
     struct omission omission[RUN_MAX_OMISSIONS];
 
-    double residual;           /* largest constraint residual that a rank saw, relative; NaN: no forward dynamics */
-    double condition;          /* lower bound of the block-scaled system's condition, from its pivots; 0: not known */
+    /* largest constraint residual that a rank saw, relative; NaN: no forward dynamics */
+    double residual;
+    /* lower bound of the block-scaled system's condition, from its pivots; 0: not known */
+    double condition;
     int inner_added, outer_added; /* refinements that the run switched on by itself */
     bool twice_added;          /* with residuals in twice the digits */
     double residual_before;    /* of the answer that needed them; with none added without meaning */
-    double measured_s;         /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
-    int loop_rows, loop_rank;  /* constraints of closed chains; the independent ones among them, -1: not asked for */
-    double drift_position, drift_velocity; /* largest violation of a loop at the end [model's units]; of loops only */
+    /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
+    double measured_s;
+    /* constraints of closed chains; the independent ones among them, -1: not asked for */
+    int loop_rows, loop_rank;
+    /* largest violation of a loop at the end [model's units]; of loops only */
+    double drift_position, drift_velocity;
     int64_t messages, bytes;   /* sent, all ranks */
     int64_t events;            /* dispatched by the simulator */
     int64_t ties;              /* events that shared their time with the one before */
@@ -107,18 +117,20 @@ struct run_result {
 
     int exit_status;           /* of a person's own program: the first of a rank that is not 0 */
     int64_t nsaid;
-    char *said;                /* (nsaid, with the NUL) lines that ranks of a person's own program wrote, in
-                                  that order: "RANK STREAM TEXT"; in the run's arena, NULL: nothing */
+    char *said; /* (nsaid, with the NUL) lines that ranks of a person's own program wrote, in
+                   that order: "RANK STREAM TEXT"; in the run's arena, NULL: nothing */
     int64_t nspan;
     struct span *span;         /* in the run's arena, NULL unless recorded */
     int64_t npath;
-    struct path_step *path;    /* the critical path in the order of time, in the run's arena, NULL unless recorded */
+    /* the critical path in the order of time, in the run's arena, NULL unless recorded */
+    struct path_step *path;
     int64_t path_nodes, path_bytes; /* of the graph that it was found in, and its memory [B] */
     int nlink;
     struct link_load *link;    /* in the run's arena, NULL unless recorded */
 
     int64_t stack_peak_bytes;  /* deepest fiber stack */
-    double host_s;             /* wall time of the simulation proper; the only host-dependent numbers here */
+    /* wall time of the simulation proper; the only host-dependent numbers here */
+    double host_s;
     double host_total_s;       /* with model, references and checks */
     int64_t host_peak_bytes;
 };

@@ -1,4 +1,5 @@
-/* run_row.h - a run as rows of tables: what is known of all ranks together, and the columns of every result struct. */
+/* run_row.h - a run as rows of tables: what is known of all ranks together, and the columns of
+ * every result struct. */
 #ifndef MEASURE_RUN_ROW_H
 #define MEASURE_RUN_ROW_H
 
@@ -48,11 +49,14 @@ bool stage_time_idle(const struct stage_time *t);
 struct stage_row stage_row_make(const struct run_result *r, int stage);
 
 /* run_row_make: the row of a run; ended by run_row_free. */
-struct run_row run_row_make(const struct run_spec *spec, const struct run_order *order, const struct run_result *r);
+struct run_row run_row_make(const struct run_spec *spec, const struct run_order *order,
+                            const struct run_result *r);
 void run_row_free(struct run_row *row);
 
-/* The columns: of struct run_row, how it ended, and which refinements it added; then of the structs named. */
-extern const struct column_table run_outcome_columns, run_refinement_columns, stage_row_columns, stage_time_columns,
-    baseline_columns, error_check_columns, omission_columns, link_load_columns, span_columns;
+/* The columns: of struct run_row, how it ended, and which refinements it added; then of the structs
+ * named. */
+extern const struct column_table run_outcome_columns, run_refinement_columns, stage_row_columns,
+    stage_time_columns, baseline_columns, error_check_columns, omission_columns, link_load_columns,
+    span_columns;
 
 #endif

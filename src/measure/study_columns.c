@@ -10,6 +10,7 @@ static const char *const status_word[] = {"ok", "degraded", "failed"};
 
 /* --- ladders --------------------------------------------------------------- */
 
+/* Where a member of a rung lies. */
 #define RUNG(member) .offset = offsetof(struct accuracy_rung, member)
 
 /* A network level is method and rung at once: its name is not printed a second time. */
@@ -51,6 +52,7 @@ static const struct column rung_column[] = {
 };
 const struct column_table accuracy_rung_columns = COLUMNS(rung_column);
 
+/* Where a member of a choice lies, which points to its rung. */
 #define CHOICE(member) .offset = offsetof(struct accuracy_choice, member)
 /* A column that lies in the chosen rung; absent where none is within the tolerance. */
 #define CHOSEN(member)                                                                             \

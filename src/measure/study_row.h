@@ -1,5 +1,6 @@
-/* study_row.h - the plain structs that studies of many runs produce: rungs of ladders, what was chosen of them, grades
- * of stability, savings of omissions. Each has its table of columns (column.h), out of which the database is made. */
+/* study_row.h - the plain structs that studies of many runs produce: rungs of ladders, what was
+ * chosen of them, grades of stability, savings of omissions. Each has its table of columns
+ * (column.h), out of which the database is made. */
 #ifndef MEASURE_STUDY_ROW_H
 #define MEASURE_STUDY_ROW_H
 
@@ -35,23 +36,29 @@ struct accuracy_choice {
 /* An algorithm on a scene (study/stability.h). */
 enum stability_status { STABILITY_OK, STABILITY_DEGRADED, STABILITY_FAILED };
 
-/* Why an acceleration is not ok: the same algorithm in quad precision is right to 1e-8, or is not. The second is a
- * failure of the algorithm on that scene; the row's reason names what answers it. */
+/* Why an acceleration is not ok: the same algorithm in quad precision is right to 1e-8, or is not.
+ * The second is a failure of the algorithm on that scene; the row's reason names what answers
+ * it. */
 enum stability_cause { CAUSE_UNKNOWN, CAUSE_ROUNDING, CAUSE_ALGORITHM };
 
 struct stability_row {
     char subject[64], algorithm[40], precision[8];
     enum stability_status status; /* double: ok to 1e-8, degraded to 1e-2; float: 1e-3 and 1e-1 */
     double error;         /* relative; NaN: no number */
-    double residual;      /* |tau - inverse dynamics(answer)| over the largest joint force, in quad precision; with
-                             loops: of the constraints, as the algorithm sees it */
-    double condition;     /* of the scene: change of the answer over that of the inputs; NaN: not measured */
-    double growth;        /* of the reduction: largest diagonal element over its last pivot; NaN: none */
+    double residual;      /* |tau - inverse dynamics(answer)| over the largest joint force, in quad
+                             precision; with loops: of the constraints, as the algorithm sees
+                             it */
+    /* of the scene: change of the answer over that of the inputs; NaN: not measured */
+    double condition;
+    /* of the reduction: largest diagonal element over its last pivot; NaN: none */
+    double growth;
     int refinements;      /* corrections that were applied, inner and outer; -1: does not apply */
-    double energy_drift;  /* of motions: change of the energy over the kinetic energy or what was exchanged; of
-                             accelerations: power of the error, u . M (answer - reference), over the largest joint
-                             force times the sum of |u|; NaN: at rest */
-    double step_s;        /* of motions: largest stable or mean step, in the model's time; NaN otherwise */
+    double energy_drift;  /* of motions: change of the energy over the kinetic energy or what was
+                             exchanged; of  accelerations: power of the error, u . M (answer -
+                             reference), over the largest joint  force times the sum of |u|; NaN: at
+                             rest */
+    /* of motions: largest stable or mean step, in the model's time; NaN otherwise */
+    double step_s;
     enum stability_cause cause; /* of accelerations that are not ok */
     char reason[192];
 };
@@ -68,6 +75,7 @@ struct saving {
 };
 
 /* The columns of the structs, as the database has them, and as they are printed. */
-extern const struct column_table accuracy_rung_columns, accuracy_choice_columns, stability_columns, saving_columns;
+extern const struct column_table accuracy_rung_columns, accuracy_choice_columns, stability_columns,
+    saving_columns;
 
 #endif

@@ -31,7 +31,8 @@ static int parent_of(const struct model_spec *spec, int i, struct random *r)
 static enum model_joint joint_of(const struct model_spec *spec, int i, struct random *r)
 {
     if (i == 0 && spec->base == BASE_FLOATING) return JOINT_FLOATING;
-    return spec->joint == JOINT_MIXED ? (enum model_joint)random_below(r, JOINT_MIXED) : spec->joint;
+    return spec->joint == JOINT_MIXED ? (enum model_joint)random_below(r, JOINT_MIXED)
+                                      : spec->joint;
 }
 
 /* A uniform rod along x from the origin. */
@@ -44,7 +45,8 @@ static void rod(struct body_def *b, double length, double radius, double mass)
     b->inertia[3] = b->inertia[5] = mass * (length * length / 12 + radius * radius / 4);
 }
 
-/* A body of random shape about the rod's size: second moments along random axes, so that it is always physical. */
+/* A body of random shape about the rod's size: second moments along random axes, so that it is
+ * always physical. */
 static void random_body(const struct model_spec *spec, int i, struct body_def *b)
 {
     struct random r = random_make(spec->seed, STREAM_INERTIA, (uint64_t)i);
@@ -62,7 +64,8 @@ static void random_body(const struct model_spec *spec, int i, struct body_def *b
     }
     /* J = tr(M) U - M keeps the triangle inequality for every such M: no draw is thrown away. */
     for (int k = 0; k < 3; k++) trace += moment[k][k];
-    b->inertia[0] = trace - moment[0][0], b->inertia[3] = trace - moment[1][1], b->inertia[5] = trace - moment[2][2];
+    b->inertia[0] = trace - moment[0][0], b->inertia[3] = trace - moment[1][1],
+    b->inertia[5] = trace - moment[2][2];
     b->inertia[1] = -moment[0][1], b->inertia[2] = -moment[0][2], b->inertia[4] = -moment[1][2];
 }
 
@@ -82,14 +85,16 @@ static void placement_of(const struct model_spec *spec, struct body_def *b, stru
     if (spec->axes != AXES_TWISTED) return;
     if (spec->generator == MODEL_SERIAL_CHAIN) {
         /* Half of any turn about x. The rods of a straight pose stay in one line. */
-        angle_sincos(random_uniform(r, -0.5 * PI, 0.5 * PI), &b->placement.quat[0], &b->placement.quat[3]);
+        angle_sincos(random_uniform(r, -0.5 * PI, 0.5 * PI), &b->placement.quat[0],
+                     &b->placement.quat[3]);
     } else {
         pose_quaternion(r, b->placement.quat);
     }
 }
 
 /* Springs rest where the scene starts: the stream is that of the pose (state.c). */
-static void springs_of(const struct model *m, const struct model_spec *spec, int i, double length, struct body_def *b)
+static void springs_of(const struct model *m, const struct model_spec *spec, int i, double length,
+                       struct body_def *b)
 {
     if (joint_nu(b->joint) != 1 || (spec->stiffness == 0 && spec->damping == 0)) return;
     /* From SI to the model's own units: stiffness is kg m^2 / s^2 a radian, and kg / s^2 where the
@@ -103,7 +108,10 @@ static void springs_of(const struct model *m, const struct model_spec *spec, int
 }
 
 /* Generated bodies have no names of their own; messages need one. */
-static void name_body(struct body_def *b, int i) { snprintf(b->name, sizeof b->name, "body %d", i); }
+static void name_body(struct body_def *b, int i)
+{
+    snprintf(b->name, sizeof b->name, "body %d", i);
+}
 
 /* Chains, combs, stars, trees: they differ in the parent alone. */
 static bool add_rods(struct model *m, const struct model_spec *spec, struct err *e)
@@ -142,8 +150,8 @@ static enum model_joint closing_joint(const struct model_spec *spec)
     return fine ? spec->joint : JOINT_REVOLUTE;
 }
 
-/* Sides of a regular polygon, closed at q = 0 whatever the joints: n bodies and the base, or n bodies of which the
- * first floats. */
+/* Sides of a regular polygon, closed at q = 0 whatever the joints: n bodies and the base, or n
+ * bodies of which the first floats. */
 static bool add_ring(struct model *m, const struct model_spec *spec, struct err *e)
 {
     /* With a floating base the ring is all bodies, else the base is one of its sides. */
@@ -158,7 +166,8 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
         axes_of(&b);
         /* Every side is turned by 2 pi / sides against the one before it. */
         turn_z(b.placement.quat, i == 0 && floating ? 0 : turn);
-        b.placement.p[0] = i == 0 && floating ? 0 : length; /* the base's own side runs from 0 to length */
+        /* the base's own side runs from 0 to length */
+        b.placement.p[0] = i == 0 && floating ? 0 : length;
         if (spec->inertia == INERTIA_RANDOM)
             random_body(spec, i, &b);
         else
@@ -175,7 +184,8 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
     return model_add_loop(m, &loop, e) >= 0;
 }
 
-/* Parallelogram: ground 1.5, crank 1, coupler 1.5, rocker 1 lengths; the cut joint is a revolute. */
+/* Parallelogram: ground 1.5, crank 1, coupler 1.5, rocker 1 lengths; the cut joint is a
+ * revolute. */
 static bool add_four_bar(struct model *m, const struct model_spec *spec, struct err *e)
 {
     static const double part[3] = {1, 1.5, 1};
@@ -201,12 +211,14 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
 /* CH2 in its joint frame: carbon at the origin, two hydrogens; amu and angstrom. */
 static void methylene(struct body_def *b)
 {
-    static const double atom[3][4] = {{12.011, 0, 0, 0}, {1.008, 0.89, 0.36, 0.52}, {1.008, -0.89, 0.36, 0.52}};
+    static const double atom[3][4] = {
+        {12.011, 0, 0, 0}, {1.008, 0.89, 0.36, 0.52}, {1.008, -0.89, 0.36, 0.52}};
     /* Mass and centre first: the moments are about the centre. */
     for (int k = 0; k < 3; k++) b->mass += atom[k][0];
     for (int k = 0; k < 9; k++) b->com[k % 3] += atom[k / 3][0] * atom[k / 3][1 + k % 3] / b->mass;
     for (int k = 0; k < 3; k++) {
-        double mass = atom[k][0], x = atom[k][1] - b->com[0], y = atom[k][2] - b->com[1], z = atom[k][3] - b->com[2];
+        double mass = atom[k][0], x = atom[k][1] - b->com[0], y = atom[k][2] - b->com[1],
+               z = atom[k][3] - b->com[2];
         b->inertia[0] += mass * (y * y + z * z), b->inertia[3] += mass * (x * x + z * z);
         b->inertia[5] += mass * (x * x + y * y);
         b->inertia[1] -= mass * x * y, b->inertia[2] -= mass * x * z, b->inertia[4] -= mass * y * z;
@@ -239,13 +251,14 @@ static bool add_polymer(struct model *m, const struct model_spec *spec, struct e
 
 static bool is_usual(double x) { return x >= 1e-6 && x <= 1e6; }
 
-/* Units of links far from a metre or a kilogram: powers of two near the links' own, and the time in which the given
- * torques (or gravity) turn one about. Products of masses and lengths then stay within any precision, and no number is
- * rounded by it. */
+/* Units of links far from a metre or a kilogram: powers of two near the links' own, and the time in
+ * which the given torques (or gravity) turn one about. Products of masses and lengths then stay
+ * within any precision, and no number is rounded by it. */
 static struct model_spec in_own_units(const struct model_spec *spec, struct model *m)
 {
     struct model_spec x = *spec;
-    if (spec->generator == MODEL_POLYMER || (is_usual(spec->length) && is_usual(spec->mass))) return x;
+    if (spec->generator == MODEL_POLYMER || (is_usual(spec->length) && is_usual(spec->mass)))
+        return x;
     const double *g = spec->gravity, gravity = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
     /* Exponents of two: numbers change theirs and keep all digits. */
     const int metre = ilogb(spec->length), kilogram = ilogb(spec->mass);

@@ -1,10 +1,11 @@
-/* joint_type.c - what every joint type is called and what follows from the letters of its coordinates (model.h). */
+/* joint_type.c - what every joint type is called and what follows from the letters of its
+ * coordinates (model.h). */
 #include <string.h>
 
 #include "model/model.h"
 
-/* The columns of JOINT_LIST that are facts of a type, not names of its code: a row a type, in the order of the
- * constants. */
+/* The columns of JOINT_LIST that are facts of a type, not names of its code: a row a type, in the
+ * order of the constants. */
 static const struct {
     const char *name, *coordinates;
     enum joint_plane plane;
@@ -29,7 +30,10 @@ int joint_nu(enum model_joint joint) { return count(joint, 3); }
 const char *joint_name(enum model_joint joint) { return joint_table[joint].name; }
 const char *joint_coordinates(enum model_joint joint) { return joint_table[joint].coordinates; }
 enum joint_plane joint_plane(enum model_joint joint) { return joint_table[joint].plane; }
-bool joint_has(enum model_joint joint, enum joint_trait trait) { return joint_table[joint].traits & trait; }
+bool joint_has(enum model_joint joint, enum joint_trait trait)
+{
+    return joint_table[joint].traits & trait;
+}
 
 int joint_quaternion(enum model_joint joint)
 {

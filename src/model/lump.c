@@ -63,10 +63,12 @@ static void tensor_turn(const struct frame *f, const double j[6], double out[6])
     double t[9];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            t[3 * i + k] = r[3 * i] * full[k] + r[3 * i + 1] * full[3 + k] + r[3 * i + 2] * full[6 + k];
+            t[3 * i + k] =
+                r[3 * i] * full[k] + r[3 * i + 1] * full[3 + k] + r[3 * i + 2] * full[6 + k];
     for (int i = 0, n = 0; i < 3; i++)
         for (int k = i; k < 3; k++, n++)
-            out[n] = t[3 * i] * r[3 * k] + t[3 * i + 1] * r[3 * k + 1] + t[3 * i + 2] * r[3 * k + 2];
+            out[n] =
+                t[3 * i] * r[3 * k] + t[3 * i + 1] * r[3 * k + 1] + t[3 * i + 2] * r[3 * k + 2];
 }
 
 /* Add the mass of `part`, whose frame is `at` in the whole's frame. */
@@ -124,7 +126,8 @@ static struct model *model_like(const struct model *m, struct arena *a)
 }
 
 /* One pass, parents first: where a body has gone is known when its children come. */
-bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, struct lumped *out, struct err *e)
+bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, struct lumped *out,
+                struct err *e)
 {
     struct body_def *def = TAKE(a, m->nbody, struct body_def);
     int n = 0;
@@ -157,7 +160,8 @@ bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, 
 }
 
 /* Joints keep their order and fixed ones have no coordinates: q, u and tau are the same arrays. */
-struct state *lump_state(const struct lumped *lumped, const struct model *old, const struct state *s, struct arena *a)
+struct state *lump_state(const struct lumped *lumped, const struct model *old,
+                         const struct state *s, struct arena *a)
 {
     struct state *new = TAKE(a, 1, struct state);
     *new = *s;

@@ -19,7 +19,8 @@ struct model *model_begin(struct arena *a, const char *file)
 }
 
 /* What is wrong with body `name`, at its line. */
-static bool refuse(const struct model *m, const char *kind, const char *name, int line, struct err *e, const char *why)
+static bool refuse(const struct model *m, const char *kind, const char *name, int line,
+                   struct err *e, const char *why)
 {
     /* Line 0 is that of generated bodies: they stand in no file. */
     return err_set_at(e, ERR_DATA, m->file ? m->file : "", line, "%s '%s': %s", kind, name, why);
@@ -47,13 +48,17 @@ static void complete_frame(struct frame *f)
     if (norm(f->quat, 4) == 0) f->quat[3] = 1;
 }
 
-static bool frame_finite(const struct frame *f) { return all_finite(f->quat, 4) && all_finite(f->p, 3); }
+static bool frame_finite(const struct frame *f)
+{
+    return all_finite(f->quat, 4) && all_finite(f->p, 3);
+}
 
 /* Relative to both lengths, which are free; 1e-9 forgives the rounding of printed axes. */
 static bool orthogonal(const double *x, const double *y)
 {
     double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-    double xx = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], yy = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
+    double xx = x[0] * x[0] + x[1] * x[1] + x[2] * x[2],
+           yy = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
     return fabs(dot) <= 1e-9 * sqrt(xx) * sqrt(yy);
 }
 
@@ -62,13 +67,17 @@ static const char *joint_fault(const struct body_def *b)
 {
     /* Traits say which axes a type needs (spec/joint_list.h). */
     if (b->joint >= JOINT_MIXED) return "unknown joint type";
-    if (!all_finite(b->axis, 3) || !all_finite(b->axis2, 3) || !isfinite(b->pitch)) return "axis or pitch not finite";
-    if (joint_has(b->joint, JOINT_AXIS) && norm(b->axis, 3) == 0) return "its joint needs an axis that is not zero";
-    if (joint_has(b->joint, JOINT_TWO_AXES) && (norm(b->axis2, 3) == 0 || !orthogonal(b->axis, b->axis2)))
+    if (!all_finite(b->axis, 3) || !all_finite(b->axis2, 3) || !isfinite(b->pitch))
+        return "axis or pitch not finite";
+    if (joint_has(b->joint, JOINT_AXIS) && norm(b->axis, 3) == 0)
+        return "its joint needs an axis that is not zero";
+    if (joint_has(b->joint, JOINT_TWO_AXES) &&
+        (norm(b->axis2, 3) == 0 || !orthogonal(b->axis, b->axis2)))
         return "its joint needs two orthogonal axes (use two revolute joints otherwise)";
     if (joint_has(b->joint, JOINT_NORMAL) && !orthogonal(b->axis, b->axis2))
         return "the direction of x must lie in the joint's plane";
-    if (!isfinite(b->stiffness) || !isfinite(b->rest) || !isfinite(b->damping)) return "spring or damper not finite";
+    if (!isfinite(b->stiffness) || !isfinite(b->rest) || !isfinite(b->damping))
+        return "spring or damper not finite";
     if ((b->stiffness != 0 || b->damping != 0) && joint_nu(b->joint) != 1)
         return "springs and dampers act on joints of one degree of freedom only";
     return NULL;
@@ -78,7 +87,8 @@ static const char *joint_fault(const struct body_def *b)
 int model_add_body(struct model *m, const struct body_def *def, struct err *e)
 {
     const char *fault = joint_fault(def);
-    if (!fault && (def->parent < -1 || def->parent >= m->nbody)) fault = "its parent must come before it";
+    if (!fault && (def->parent < -1 || def->parent >= m->nbody))
+        fault = "its parent must come before it";
     if (!fault && !frame_finite(&def->placement)) fault = "placement not finite";
     if (fault) {
         refuse(m, "body", def->name, def->line, e, fault);
@@ -111,8 +121,10 @@ static const char *loop_fault(const struct model *m, const struct loop_def *l)
     for (int i = 0; i < l->nrow; i++)
         if (norm(l->row[i], 6) == 0) return "a row is zero";
     /* By a joint: W must have columns to constrain with (physics 1.3). */
-    if (l->nrow == 0 && (l->joint >= JOINT_MIXED || joint_nu(l->joint) == 6)) return "its joint constrains nothing";
-    if (l->nrow == 0 && joint_has(l->joint, JOINT_IN_TREES)) return "a joint of its type cannot close a loop";
+    if (l->nrow == 0 && (l->joint >= JOINT_MIXED || joint_nu(l->joint) == 6))
+        return "its joint constrains nothing";
+    if (l->nrow == 0 && joint_has(l->joint, JOINT_IN_TREES))
+        return "a joint of its type cannot close a loop";
     if (!isfinite(l->alpha) || !isfinite(l->beta) || l->alpha < 0 || l->beta < 0)
         return "stabilisation must be finite and not negative";
     return NULL;
@@ -167,25 +179,30 @@ static bool invertible(const struct body_def *b)
     return b->mass > 0 && w[0] > 1e-15 * w[2];
 }
 
-static bool body_check(const struct model *m, const struct body_def *b, bool allow_nonphysical, struct err *e)
+static bool body_check(const struct model *m, const struct body_def *b, bool allow_nonphysical,
+                       struct err *e)
 {
     if (!isfinite(b->mass) || !all_finite(b->com, 3) || !all_finite(b->inertia, 6))
-        return refuse(m, "body", b->name, b->line, e, "mass, centre of mass or inertia is not finite");
+        return refuse(m, "body", b->name, b->line, e,
+                      "mass, centre of mass or inertia is not finite");
     /* Finite numbers are all that algorithms need in order not to crash. */
     if (allow_nonphysical) return true;
     double w[3];
     principal_moments(b->inertia, w);
     const char *file = m->file ? m->file : "";
     if (b->mass <= 0)
-        return err_set_at(e, ERR_DATA, file, b->line, "body '%s': mass %g, must be positive", b->name, b->mass);
+        return err_set_at(e, ERR_DATA, file, b->line, "body '%s': mass %g, must be positive",
+                          b->name, b->mass);
     if (w[0] <= 0)
         return err_set_at(e, ERR_DATA, file, b->line,
-                          "body '%s': inertia not positive definite (principal moments %g, %g, %g)", b->name, w[0],
+                          "body '%s': inertia not positive definite (principal moments %g, %g, "
+                          "%g)", b->name, w[0],
                           w[1], w[2]);
     /* Moments of inertia are sums of two second moments each: none exceeds the other two. */
     if (w[0] + w[1] < w[2] * (1 - 1e-9))
         return err_set_at(e, ERR_DATA, file, b->line,
-                          "body '%s': inertia violates the triangle inequality (principal moments %g + %g < %g)",
+                          "body '%s': inertia violates the triangle inequality (principal moments "
+                          "%g + %g < %g)",
                           b->name, w[0], w[1], w[2]);
     return true;
 }
@@ -223,7 +240,8 @@ static void index_coordinates(struct model *m)
     }
     for (int l = 0; l < m->nloop; l++)
         /* Rows as given, or the 6 - d columns of the joint's W (physics 1.3). */
-        m->row_at[l + 1] = m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
+        m->row_at[l + 1] =
+            m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
     m->nq = m->q_at[m->nbody];
     m->nu = m->u_at[m->nbody];
     m->nrow = m->row_at[m->nloop];
@@ -233,8 +251,10 @@ static void index_coordinates(struct model *m)
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
 {
     if (m->nbody > MODEL_MAX_BODIES || m->nloop > MODEL_MAX_BODIES)
-        return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "more than %d bodies or loops", MODEL_MAX_BODIES);
-    if (m->nbody == 0) return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "the model has no body");
+        return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "more than %d bodies or loops",
+                          MODEL_MAX_BODIES);
+    if (m->nbody == 0)
+        return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "the model has no body");
     for (int i = 0; i < m->nbody; i++)
         if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
     index_children(m);
@@ -242,7 +262,8 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
     /* Their matrix is dense. */
     if (m->nrow > MODEL_MAX_ROWS)
         return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0,
-                          "the loops have %d rows together; at most %d: their matrix would take %.3g GB", m->nrow,
+                          "the loops have %d rows together; at most %d: their matrix would take "
+                          "%.3g GB", m->nrow,
                           MODEL_MAX_ROWS, (double)m->nrow * m->nrow * sizeof(double) / 1e9);
     m->constants = NULL;
     return true;

@@ -18,7 +18,8 @@ void pose_quaternion(struct random *r, double *quat)
 
 /* Poses do not depend on how bodies are distributed: every body has a random stream of its own.
  *
- * First rotational coordinate: straight 0, folded pi from the second body on, otherwise anywhere. */
+ * First rotational coordinate: straight 0, folded pi from the second body on, otherwise
+ * anywhere. */
 static double pose_angle(const struct model_spec *spec, int i, struct random *r)
 {
     if (spec->pose == POSE_STRAIGHT) return 0;
@@ -43,11 +44,13 @@ static double pose_shift(const struct model_spec *spec, struct random *r, double
     return spec->pose == POSE_RANDOM ? random_uniform(r, -length, length) : 0;
 }
 
-void pose_coordinates(const struct model_spec *spec, enum model_joint joint, int i, double length, double *q)
+void pose_coordinates(const struct model_spec *spec, enum model_joint joint, int i, double length,
+                      double *q)
 {
     struct random r = random_make(spec->seed, STREAM_POSE, (uint64_t)i);
     bool turned = false;
-    /* the numbers are drawn in the order of the coordinates, so that a type's letters are all that decides them */
+    /* the numbers are drawn in the order of the coordinates, so that a type's letters are all that
+     * decides them */
     for (const char *c = joint_coordinates(joint); *c; c++) {
         if (*c == 'q') {
             pose_rotation(spec, i, &r, q);

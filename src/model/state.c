@@ -30,8 +30,8 @@ double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
 }
 
 /* x (nu) = normal numbers, scaled by `angular` or `linear` as each component is. */
-static void scatter(const struct model *m, uint64_t seed, enum pose_stream stream, double angular, double linear,
-                    double *x)
+static void scatter(const struct model *m, uint64_t seed, enum pose_stream stream, double angular,
+                    double linear, double *x)
 {
     for (int i = 0; i < m->nbody; i++) {
         /* A stream for each body and purpose: what one body draws shifts no other's numbers. */
@@ -43,12 +43,13 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
 }
 
 /* [force; moment] as in model.h. A moment is as large as the force at the end of a link. */
-static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force, double length,
-                             double *fext)
+static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force,
+                             double length, double *fext)
 {
     for (int i = 0; i < m->nbody; i++) {
         struct random r = random_make(spec->seed, STREAM_FORCE, (uint64_t)i);
-        for (int k = 0; k < 6; k++) fext[6 * i + k] = random_normal(&r) * force * (k < 3 ? 1 : length);
+        for (int k = 0; k < 6; k++)
+            fext[6 * i + k] = random_normal(&r) * force * (k < 3 ? 1 : length);
     }
 }
 
@@ -68,26 +69,30 @@ struct state *state_generate(const struct model *m, const struct model_spec *spe
 {
     struct state *s = state_take(m, a);
     /* Lengths and times in the model's units; the links of a polymer count as one angstrom. */
-    double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
+    double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre,
+           rate = spec->rate * m->second;
     double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;
     /* A ring closes at q = 0, a four-bar in a pose of its own: drawn ones would open both. */
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)
-        for (int i = 0; i < m->nbody; i++) pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
+        for (int i = 0; i < m->nbody; i++)
+            pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
     /* What slides has rates a link's length times those of what turns. Accelerations are of the
      * size of the velocity terms, rate^2, so that neither hides the other. */
     scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
     if (spec->generator == MODEL_FOUR_BAR) pose_four_bar(spec, s);
     scatter(m, spec->seed, STREAM_ACCELERATION, rate * rate, rate * rate * length, s->qdd);
     /* The force of a slide does as much at a link's length as the torque of a turn. */
-    scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length), s->tau);
+    scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length),
+            s->tau);
     if (spec->external_force > 0)
         scatter_wrenches(m, spec, spec->external_force / force, length, state_fext_need(s, m, a));
     /* Prescribed motion of the base, without gravity, which the model has. */
     if (spec->base == BASE_MOVING) {
         for (int k = 0; k < 3; k++) {
             s->base_acceleration[k] = spec->base_acceleration[k] * m->second * m->second;
-            s->base_acceleration[3 + k] = spec->base_acceleration[3 + k] * m->second * m->second / m->metre;
+            s->base_acceleration[3 + k] =
+                spec->base_acceleration[3 + k] * m->second * m->second / m->metre;
         }
     }
     return s;

@@ -1,7 +1,8 @@
 /* urdf.c - reading URDF with expat: elements into links and joints.
  *
- * A stack of open elements says where we are; only the dozen elements that matter for dynamics have a reader. A tag or
- * attribute that looks like a misspelling of one of them is an error, since skipping it would change the robot. */
+ * A stack of open elements says where we are; only the dozen elements that matter for dynamics have
+ * a reader. A tag or attribute that looks like a misspelling of one of them is an error, since
+ * skipping it would change the robot. */
 #include "model/urdf.h"
 
 #include <expat.h>
@@ -15,7 +16,8 @@
 
 enum { MAX_DEPTH = 64, MAX_BYTES = 64 * 1024 * 1024 };
 
-static const char *const kind_name[URDF_KINDS] = {"fixed", "revolute", "continuous", "prismatic", "floating", "planar"};
+static const char *const kind_name[URDF_KINDS] = {"fixed",     "revolute", "continuous",
+                                                  "prismatic", "floating", "planar"};
 
 const char *urdf_kind_name(enum urdf_kind kind) { return kind_name[kind]; }
 
@@ -46,11 +48,11 @@ static void refuse(struct reader *r, const char *text)
 
 /* The first mistake stops the reader; expat may still report a few tags. Long names are cut: the
  * line says where. */
-#define REFUSE(r, ...)                                                                                                 \
-    do {                                                                                                               \
-        char refuse_text[512];                                                                                         \
-        snprintf(refuse_text, sizeof refuse_text, __VA_ARGS__);                                                        \
-        refuse((r), refuse_text);                                                                                      \
+#define REFUSE(r, ...)                                                                             \
+    do {                                                                                           \
+        char refuse_text[512];                                                                     \
+        snprintf(refuse_text, sizeof refuse_text, __VA_ARGS__);                                    \
+        refuse((r), refuse_text);                                                                  \
     } while (0)
 
 /* Room for one more element in an array of the arena, doubled when full. */
@@ -67,18 +69,19 @@ static void *grown(struct arena *a, void *array, int count, int *capacity, size_
 static void warn(struct reader *r, const char *text)
 {
     struct urdf_robot *robot = r->robot;
-    robot->warning = grown(r->a, robot->warning, robot->nwarning, &r->warning_capacity, sizeof *robot->warning);
+    robot->warning =
+        grown(r->a, robot->warning, robot->nwarning, &r->warning_capacity, sizeof *robot->warning);
     robot->warning[robot->nwarning++] = (struct urdf_warning){line_now(r), arena_text(r->a, text)};
 }
 
-#define WARN(r, ...)                                                                                                   \
-    do {                                                                                                               \
-        char warn_text[256];                                                                                           \
-        snprintf(warn_text, sizeof warn_text, __VA_ARGS__);                                                            \
-        warn((r), warn_text);                                                                                          \
+#define WARN(r, ...)                                                                               \
+    do {                                                                                           \
+        char warn_text[256];                                                                       \
+        snprintf(warn_text, sizeof warn_text, __VA_ARGS__);                                        \
+        warn((r), warn_text);                                                                      \
     } while (0)
 
-/* --- attributes ------------------------------------------------------------------------------------------------ */
+/* --- attributes ------------------------------------------------------------------------------- */
 
 /* expat gives names and values in turns. */
 static const char *attribute(const char **attributes, const char *name)
@@ -89,7 +92,8 @@ static const char *attribute(const char **attributes, const char *name)
 }
 
 /* Exactly n finite numbers separated by blanks. */
-static bool numbers_parse(struct reader *r, const char *tag, const char *name, const char *s, double *x, int n)
+static bool numbers_parse(struct reader *r, const char *tag, const char *name, const char *s,
+                          double *x, int n)
 {
     const char *at = s;
     for (int i = 0; i < n; i++) {
@@ -98,26 +102,28 @@ static bool numbers_parse(struct reader *r, const char *tag, const char *name, c
         x[i] = strtod(at, &end);
         /* xacro files look like URDF until their first expression. */
         if (end == at || !isfinite(x[i])) {
-            REFUSE(r, "<%s> %s=\"%.60s\": %d finite number%s expected%s", tag, name, s, n, n > 1 ? "s" : "",
-                   strstr(s, "${") ? "; expand xacro first" : "");
+            REFUSE(r, "<%s> %s=\"%.60s\": %d finite number%s expected%s", tag, name, s, n,
+                   n > 1 ? "s" : "", strstr(s, "${") ? "; expand xacro first" : "");
             return false;
         }
         at = end;
     }
-    if (at[strspn(at, " \t\r\n")] != 0) REFUSE(r, "<%s> %s=\"%.60s\": text after the last number", tag, name, s);
+    if (at[strspn(at, " \t\r\n")] != 0)
+        REFUSE(r, "<%s> %s=\"%.60s\": text after the last number", tag, name, s);
     return r->e->kind == ERR_NONE;
 }
 
 /* Numbers of an attribute that may be left out; x then keeps its value. */
-static bool numbers_maybe(struct reader *r, const char *tag, const char **attributes, const char *name, double *x,
-                          int n)
+static bool numbers_maybe(struct reader *r, const char *tag, const char **attributes,
+                          const char *name, double *x, int n)
 {
     const char *s = attribute(attributes, name);
     return !s || numbers_parse(r, tag, name, s, x, n);
 }
 
 /* Required: URDF has no default for it. */
-static bool number_need(struct reader *r, const char *tag, const char **attributes, const char *name, double *x)
+static bool number_need(struct reader *r, const char *tag, const char **attributes,
+                        const char *name, double *x)
 {
     const char *s = attribute(attributes, name);
     if (!s) REFUSE(r, "<%s> without %s=", tag, name);
@@ -125,7 +131,8 @@ static bool number_need(struct reader *r, const char *tag, const char **attribut
 }
 
 /* Names outlive the parser. */
-static const char *name_need(struct reader *r, const char *tag, const char **attributes, const char *name)
+static const char *name_need(struct reader *r, const char *tag, const char **attributes,
+                             const char *name)
 {
     const char *s = attribute(attributes, name);
     if (s && s[0]) return arena_text(r->a, s);
@@ -133,11 +140,14 @@ static const char *name_need(struct reader *r, const char *tag, const char **att
     return NULL;
 }
 
-/* --- elements -------------------------------------------------------------------------------------------------- */
+/* --- elements --------------------------------------------------------------------------------- */
 
 /* Elements belong to the link or joint that was opened last. */
 static struct urdf_link *link_now(struct reader *r) { return &r->robot->link[r->robot->nlink - 1]; }
-static struct urdf_joint *joint_now(struct reader *r) { return &r->robot->joint[r->robot->njoint - 1]; }
+static struct urdf_joint *joint_now(struct reader *r)
+{
+    return &r->robot->joint[r->robot->njoint - 1];
+}
 
 /* Rotations about the fixed x, y, z axes in this order. */
 static void quat_from_rpy(const double rpy[3], double quat[4])
@@ -155,7 +165,8 @@ static void quat_from_rpy(const double rpy[3], double quat[4])
 static void origin_read(struct reader *r, const char **attributes, double p[3], double quat[4])
 {
     double rpy[3] = {0, 0, 0};
-    if (numbers_maybe(r, "origin", attributes, "xyz", p, 3) && numbers_maybe(r, "origin", attributes, "rpy", rpy, 3))
+    if (numbers_maybe(r, "origin", attributes, "xyz", p, 3) &&
+        numbers_maybe(r, "origin", attributes, "rpy", rpy, 3))
         quat_from_rpy(rpy, quat);
 }
 
@@ -167,7 +178,8 @@ static void link_read(struct reader *r, const char **attributes)
     if (!name) return;
     robot->link = grown(r->a, robot->link, robot->nlink, &r->link_capacity, sizeof *robot->link);
     robot->link[robot->nlink++] = (struct urdf_link){
-        .name = name, .line = line_now(r), .inertial_line = line_now(r), .quat = {0, 0, 0, 1}, .joint = -1};
+        .name = name, .line = line_now(r), .inertial_line = line_now(r), .quat = {0, 0, 0, 1},
+        .joint = -1};
 }
 
 /* Mass and inertia may come in any order; which of them came is asked at the end (on_end). */
@@ -212,7 +224,8 @@ static bool kind_read(struct reader *r, const char *joint, const char *type, enu
     }
     /* Types of other formats, such as "hinge", have no near name: then all are listed. */
     const char *nearest = text_nearest(type, kind_name, URDF_KINDS);
-    REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s%s%s", joint, type, nearest ? "; did you mean '" : "",
+    REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s%s%s", joint, type,
+           nearest ? "; did you mean '" : "",
            nearest ? nearest : "; known: fixed, revolute, continuous, prismatic, floating, planar",
            nearest ? "'?" : "");
     return false;
@@ -229,7 +242,8 @@ static void joint_read(struct reader *r, const char **attributes)
     /* Two arrays grow together: the first must not move the common capacity. */
     int capacity = r->joint_capacity;
     r->names = grown(r->a, r->names, robot->njoint, &capacity, sizeof *r->names);
-    robot->joint = grown(r->a, robot->joint, robot->njoint, &r->joint_capacity, sizeof *robot->joint);
+    robot->joint =
+        grown(r->a, robot->joint, robot->njoint, &r->joint_capacity, sizeof *robot->joint);
     r->names[robot->njoint] = (struct urdf_names){{NULL, 0}, {NULL, 0}};
     robot->joint[robot->njoint++] = (struct urdf_joint){.name = name,
                                                         .line = line_now(r),
@@ -249,7 +263,8 @@ static void joint_origin_read(struct reader *r, const char **attributes)
 }
 
 /* Once each: of two parents the last would win in silence. */
-static void end_read(struct reader *r, const char **attributes, const char *tag, struct urdf_name *end)
+static void end_read(struct reader *r, const char **attributes, const char *tag,
+                     struct urdf_name *end)
 {
     if (end->name) REFUSE(r, "joint '%.100s' has a second <%s>", joint_now(r)->name, tag);
     *end = (struct urdf_name){name_need(r, tag, attributes, "link"), line_now(r)};
@@ -276,7 +291,8 @@ static void axis_read(struct reader *r, const char **attributes)
     double length = hypot(hypot(x[0], x[1]), x[2]);
     /* Fixed and floating joints have none. */
     bool needed = joint->kind != URDF_FIXED && joint->kind != URDF_FLOATING;
-    if (needed && !(length > 1e-100)) REFUSE(r, "the axis of joint '%.100s' has length zero", joint->name);
+    if (needed && !(length > 1e-100))
+        REFUSE(r, "the axis of joint '%.100s' has length zero", joint->name);
     for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] = x[i] / length;
 }
 
@@ -294,7 +310,8 @@ static void limit_read(struct reader *r, const char **attributes)
         return;
     /* Continuous joints give effort and velocity alone. */
     if (!sliding || !range) return;
-    if (lower > upper) REFUSE(r, "joint '%.100s': lower limit %g above upper limit %g", joint->name, lower, upper);
+    if (lower > upper)
+        REFUSE(r, "joint '%.100s': lower limit %g above upper limit %g", joint->name, lower, upper);
     joint->has_limit = true;
     joint->lower = lower;
     joint->upper = upper;
@@ -308,8 +325,10 @@ static void dynamics_read(struct reader *r, const char **attributes)
     if (!numbers_maybe(r, "dynamics", attributes, "damping", &joint->damping, 1) ||
         !numbers_maybe(r, "dynamics", attributes, "friction", &friction, 1))
         return;
-    if (joint->damping < 0) REFUSE(r, "joint '%.100s' has negative damping %g", joint->name, joint->damping);
-    if (friction != 0) WARN(r, "joint '%.100s': dry friction is not supported; ignored", joint->name);
+    if (joint->damping < 0)
+        REFUSE(r, "joint '%.100s' has negative damping %g", joint->name, joint->damping);
+    if (friction != 0)
+        WARN(r, "joint '%.100s': dry friction is not supported; ignored", joint->name);
 }
 
 /* It would be a constraint between coordinates, which models do not have. */
@@ -342,7 +361,8 @@ static const struct element element_table[] = {
     {"collision", IN_LINK, IN_SKIPPED, NULL, false, {0}},
     {"origin", IN_INERTIAL, IN_LEAF, link_origin_read, false, {"xyz", "rpy"}},
     {"mass", IN_INERTIAL, IN_LEAF, mass_read, false, {"value"}},
-    {"inertia", IN_INERTIAL, IN_LEAF, inertia_read, false, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
+    {"inertia", IN_INERTIAL, IN_LEAF, inertia_read, false, {"ixx", "ixy", "ixz", "iyy", "iyz",
+     "izz"}},
     {"origin", IN_JOINT, IN_LEAF, joint_origin_read, false, {"xyz", "rpy"}},
     {"parent", IN_JOINT, IN_LEAF, parent_read, false, {"link"}},
     {"child", IN_JOINT, IN_LEAF, child_read, false, {"link"}},
@@ -356,18 +376,20 @@ static const struct element element_table[] = {
 enum { ELEMENTS = sizeof element_table / sizeof *element_table };
 
 /* A misspelled attribute would be a missing one. */
-static void attributes_check(struct reader *r, const struct element *element, const char **attributes)
+static void attributes_check(struct reader *r, const struct element *element,
+                             const char **attributes)
 {
     int known = 0;
     while (known < 8 && element->attribute[known]) known++;
     for (int i = 0; known > 0 && attributes[i]; i += 2) {
         bool found = false;
-        for (int k = 0; k < known; k++) found = found || strcmp(attributes[i], element->attribute[k]) == 0;
+        for (int k = 0; k < known; k++)
+            found = found || strcmp(attributes[i], element->attribute[k]) == 0;
         /* What is like a known name is a mistake, what is like none an extension. */
         const char *nearest = found ? NULL : text_nearest(attributes[i], element->attribute, known);
         if (nearest)
-            REFUSE(r, "<%s> has an unknown attribute '%.60s'; did you mean '%s'?", element->tag, attributes[i],
-                   nearest);
+            REFUSE(r, "<%s> has an unknown attribute '%.60s'; did you mean '%s'?", element->tag,
+                   attributes[i], nearest);
         else if (!found)
             WARN(r, "<%s>: unknown attribute '%.60s' ignored", element->tag, attributes[i]);
     }
@@ -390,7 +412,8 @@ static enum where element_unknown(struct reader *r, const char *tag, enum where 
 }
 
 /* Attributes are checked first: after a refusal the reader would only add a second message. */
-static enum where element_read(struct reader *r, const char *tag, enum where in, const char **attributes)
+static enum where element_read(struct reader *r, const char *tag, enum where in,
+                               const char **attributes)
 {
     for (int i = 0; i < ELEMENTS; i++) {
         const struct element *element = &element_table[i];
@@ -416,7 +439,8 @@ static void XMLCALL on_start(void *context, const char *tag, const char **attrib
     enum where in = r->depth > 0 ? r->where[r->depth - 1] : IN_FILE, opens = IN_SKIPPED;
     /* Only <robot> makes a file URDF. */
     if (in == IN_FILE) {
-        if (strcmp(tag, "robot") != 0) REFUSE(r, "not a URDF file: its root is <%.60s>, not <robot>", tag);
+        if (strcmp(tag, "robot") != 0)
+            REFUSE(r, "not a URDF file: its root is <%.60s>, not <robot>", tag);
         const char *name = attribute(attributes, "name");
         r->robot->name = arena_text(r->a, name ? name : "");
         opens = IN_ROBOT;
@@ -434,12 +458,13 @@ static void XMLCALL on_end(void *context, const char *tag)
     (void)tag;
     if (r->e->kind != ERR_NONE) return;
     enum where closed = r->where[--r->depth];
-    if (closed == IN_INERTIAL && !r->has_mass) REFUSE(r, "link '%.100s': <inertial> without <mass>", link_now(r)->name);
+    if (closed == IN_INERTIAL && !r->has_mass)
+        REFUSE(r, "link '%.100s': <inertial> without <mass>", link_now(r)->name);
     if (closed == IN_INERTIAL && !r->has_inertia)
         REFUSE(r, "link '%.100s': <inertial> without <inertia>", link_now(r)->name);
 }
 
-/* --- the file -------------------------------------------------------------------------------------------------- */
+/* --- the file --------------------------------------------------------------------------------- */
 
 /* In one piece: files are small. */
 static bool xml_parse(struct reader *r, const struct text *text)
@@ -447,7 +472,8 @@ static bool xml_parse(struct reader *r, const struct text *text)
     XML_SetUserData(r->parser, r);
     XML_SetElementHandler(r->parser, on_start, on_end);
     /* Handlers stop the parser themselves; then our own message stands. */
-    bool good = XML_Parse(r->parser, text->s ? text->s : "", (int)text->length, XML_TRUE) == XML_STATUS_OK;
+    bool good =
+        XML_Parse(r->parser, text->s ? text->s : "", (int)text->length, XML_TRUE) == XML_STATUS_OK;
     if (!good && r->e->kind == ERR_NONE && XML_GetErrorCode(r->parser) == XML_ERROR_NO_MEMORY)
         err_set(r->e, ERR_INTERNAL, "out of memory reading %s", r->robot->path);
     else if (!good && r->e->kind == ERR_NONE)
@@ -464,10 +490,12 @@ bool urdf_read(const char *path, struct urdf_robot *robot, struct arena *a, stru
     struct reader r = {.a = a, .e = e, .robot = robot};
     if (e->kind != ERR_NONE || !text_read_file(&text, path, e)) return false;
     /* Before expat, which takes lengths as int. */
-    bool good = text.length <= MAX_BYTES || err_set_at(e, ERR_DATA, path, 0, "larger than %d bytes", MAX_BYTES);
+    bool good = text.length <= MAX_BYTES ||
+                err_set_at(e, ERR_DATA, path, 0, "larger than %d bytes", MAX_BYTES);
     if (good) {
         r.parser = XML_ParserCreate(NULL);
-        good = r.parser ? xml_parse(&r, &text) : err_set(e, ERR_INTERNAL, "no memory for the XML reader");
+        good = r.parser ? xml_parse(&r, &text)
+                        : err_set(e, ERR_INTERNAL, "no memory for the XML reader");
         if (r.parser) XML_ParserFree(r.parser);
     }
     text_free(&text);

@@ -1,8 +1,9 @@
 /* urdf.h - robots described by URDF files: links with inertias, joined to a tree.
  *
- * Units of the format are SI. What matters for dynamics is read; geometry is skipped; what would matter and is not
- * supported (mimic, transmission, friction, ...) is listed as a warning with its line. Links are bodies in the order of
- * a depth-first walk from the root, children in the order of the file's joints. */
+ * Units of the format are SI. What matters for dynamics is read; geometry is skipped; what would
+ * matter and is not supported (mimic, transmission, friction, ...) is listed as a warning with its
+ * line. Links are bodies in the order of a depth-first walk from the root, children in the order of
+ * the file's joints. */
 #ifndef MODEL_URDF_H
 #define MODEL_URDF_H
 
@@ -11,7 +12,15 @@
 #include "base/arena.h"
 #include "base/err.h"
 
-enum urdf_kind { URDF_FIXED, URDF_REVOLUTE, URDF_CONTINUOUS, URDF_PRISMATIC, URDF_FLOATING, URDF_PLANAR, URDF_KINDS };
+enum urdf_kind {
+    URDF_FIXED,
+    URDF_REVOLUTE,
+    URDF_CONTINUOUS,
+    URDF_PRISMATIC,
+    URDF_FLOATING,
+    URDF_PLANAR,
+    URDF_KINDS
+};
 
 struct urdf_link {
     const char *name;
@@ -21,7 +30,8 @@ struct urdf_link {
     double mass;          /* [kg] */
     double com[3];        /* in link axes, from the link's origin [m] */
     double quat[4];       /* [x, y, z, w] of the inertial frame in link axes */
-    double inertia[6];    /* about the centre of mass in inertial axes: xx xy xz yy yz zz [kg m^2] */
+    /* about the centre of mass in inertial axes: xx xy xz yy yz zz [kg m^2] */
+    double inertia[6];
     int joint;            /* that carries it, -1: the root */
 };
 
@@ -55,10 +65,10 @@ struct urdf_robot {
 
 /* urdf_read: read the robot of a URDF file, all memory from `a`.
  *
- *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): XML errors, names missing, repeated or
- *   unknown (with the nearest known one), joint type unknown, numbers malformed or not finite, an axis of length zero,
- *   a link with two parents, several roots, a cycle, more than 64 MB. Whether the inertias are possible is asked later.
- */
+ *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): XML errors, names missing,
+ * repeated or unknown (with the nearest known one), joint type unknown, numbers malformed or not
+ * finite, an axis of length zero, a link with two parents, several roots, a cycle, more than 64 MB.
+ * Whether the inertias are possible is asked later. */
 bool urdf_read(const char *path, struct urdf_robot *robot, struct arena *a, struct err *e);
 
 /* urdf_kind_name: "fixed", "revolute", ... */

@@ -1,4 +1,5 @@
-/* urdf_model.c - models made from URDF robots: links become bodies, unless they are fixed to another one. */
+/* urdf_model.c - models made from URDF robots: links become bodies, unless they are fixed to
+ * another one. */
 #include "model/urdf_model.h"
 
 #include <string.h>
@@ -34,7 +35,8 @@ static void inertia_from(const struct urdf_link *link, struct body_def *def)
     for (int k = 0; k < 3; k++) frame_turn(&f, rows[k], column[k]);      /* column[k] = R J e_k */
     for (int i = 0; i < 3; i++) {
         const double row[3] = {column[0][i], column[1][i], column[2][i]}; /* row i of R J */
-        frame_turn(&f, row, full[i]);                                     /* (R J R^T)^T, symmetric */
+        /* (R J R^T)^T, symmetric */
+        frame_turn(&f, row, full[i]);
     }
     const double out[6] = {full[0][0], (full[0][1] + full[1][0]) / 2, (full[0][2] + full[2][0]) / 2,
                            full[1][1], (full[1][2] + full[2][1]) / 2, full[2][2]};
@@ -47,7 +49,8 @@ static void inertia_from(const struct urdf_link *link, struct body_def *def)
 static struct body_def body_from(const struct urdf_robot *robot, int link_index)
 {
     const struct urdf_link *link = &robot->link[link_index];
-    struct body_def def = {.mass = link->mass, .line = link->inertial_line, .placement = {.quat = {0, 0, 0, 1}}};
+    struct body_def def = {
+        .mass = link->mass, .line = link->inertial_line, .placement = {.quat = {0, 0, 0, 1}}};
     text_copy(def.name, sizeof def.name, link->name);
     memcpy(def.com, link->com, sizeof def.com);
     inertia_from(link, &def);
@@ -62,24 +65,24 @@ static struct body_def body_from(const struct urdf_robot *robot, int link_index)
     return def;
 }
 
-/* A link that has mass or inertia must be one that a body can have; one that has neither must not have to move alone.
- */
-static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_options *o, struct arena *a,
-                       struct err *e)
+/* A link that has mass or inertia must be one that a body can have; one that has neither must not
+ * have to move alone. */
+static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_options *o,
+                       struct arena *a, struct err *e)
 {
     const struct urdf_link *link = &robot->link[i];
     /* Frames of tools and sensors: no mass, no inertia. */
     bool frame_only = link->mass == 0;
     for (int k = 0; k < 6; k++) frame_only = frame_only && link->inertia[k] == 0;
     if (link->mass < 0)
-        return err_set_at(e, ERR_DATA, robot->path, link->inertial_line, "link '%.100s' has negative mass %g kg",
-                          link->name, link->mass);
+        return err_set_at(e, ERR_DATA, robot->path, link->inertial_line,
+                          "link '%.100s' has negative mass %g kg", link->name, link->mass);
     bool is_base = link->joint < 0 && !o->floating;
     if (o->allow_nonphysical || (frame_only && (is_base || !o->keep_fixed))) return true;
     /* Only where every link is to be a body (keep_fixed): without mass it cannot be one. */
     if (!link->has_inertial)
-        return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass",
-                          link->name);
+        return err_set_at(e, ERR_DATA, robot->path, link->line,
+                          "link '%.100s' has no <inertial>: a body needs mass", link->name);
     /* Each link by itself, as a model of one body: once fixed links are merged, a bad inertia
      * may hide in a good sum, and its line is lost. */
     struct arena_mark mark = arena_mark(a);
@@ -93,8 +96,8 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
 
 /* A body for every link; the root is body 0 of a floating robot and no body of a fixed one.
  * In the order of the tree: parents first. */
-static struct model *every_link(const struct urdf_robot *robot, const struct urdf_options *o, bool allow,
-                                struct arena *a, struct err *e)
+static struct model *every_link(const struct urdf_robot *robot, const struct urdf_options *o,
+                                bool allow, struct arena *a, struct err *e)
 {
     struct model *m = model_begin(a, robot->path);
     /* Links by their number in the file, bodies by that in the tree. */
@@ -121,13 +124,15 @@ static struct model *every_link(const struct urdf_robot *robot, const struct urd
 }
 
 /* Frames on fixed joints would fail the check for mass, so it is put off until they are lumped. */
-struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_options *o, struct arena *a, struct err *e)
+struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_options *o,
+                         struct arena *a, struct err *e)
 {
     struct lumped lumped;
     struct model *m = every_link(robot, o, o->allow_nonphysical || !o->keep_fixed, a, e);
     if (!m || o->keep_fixed) return m;
     if (!lump_fixed(m, o->allow_nonphysical, a, &lumped, e)) return NULL;
-    if (!lumped.model) err_set_at(e, ERR_DATA, robot->path, 0, "all joints are fixed: nothing moves");
+    if (!lumped.model)
+        err_set_at(e, ERR_DATA, robot->path, 0, "all joints are fixed: nothing moves");
     return lumped.model;
 }
 

@@ -1,4 +1,5 @@
-/* urdf_tree.c - from names to a tree: unknown and repeated names, two parents, two roots and cycles are refused. */
+/* urdf_tree.c - from names to a tree: unknown and repeated names, two parents, two roots and cycles
+ * are refused. */
 #include "model/urdf_tree.h"
 
 #include <stdlib.h>
@@ -36,7 +37,8 @@ static bool names_sort(struct maker *m, struct named *named, int n, const char *
     for (int i = 1; i < n; i++)
         if (strcmp(named[i - 1].name, named[i].name) == 0)
             return err_set_at(m->e, ERR_DATA, m->robot->path, named[i].line,
-                              "a second %s '%.100s'; the first is on line %d", what, named[i].name, named[i - 1].line);
+                              "a second %s '%.100s'; the first is on line "
+                              "%d", what, named[i].name, named[i - 1].line);
     return true;
 }
 
@@ -47,7 +49,8 @@ static bool link_find(struct maker *m, const struct named *named, const struct u
     const struct urdf_robot *robot = m->robot;
     /* A joint may lack an end altogether. */
     if (!end->name)
-        return err_set_at(m->e, ERR_DATA, robot->path, joint->line, "joint '%.100s' has no <%s>", joint->name, tag);
+        return err_set_at(m->e, ERR_DATA, robot->path, joint->line, "joint '%.100s' has no <%s>",
+                          joint->name, tag);
     /* By halving: a search through all links for each joint would take their square. */
     int lo = 0, hi = robot->nlink;
     while (lo < hi) {
@@ -65,8 +68,9 @@ static bool link_find(struct maker *m, const struct named *named, const struct u
     const char **names = TAKE(m->a, robot->nlink, const char *);
     for (int i = 0; i < robot->nlink; i++) names[i] = named[i].name;
     const char *nearest = text_nearest(end->name, names, robot->nlink);
-    return err_set_at(m->e, ERR_DATA, robot->path, end->line, "joint '%.100s': there is no link '%.100s'%s%.100s%s",
-                      joint->name, end->name, nearest ? "; did you mean '" : "", nearest ? nearest : "",
+    return err_set_at(m->e, ERR_DATA, robot->path, end->line,
+                      "joint '%.100s': there is no link '%.100s'%s%.100s%s", joint->name, end->name,
+                      nearest ? "; did you mean '" : "", nearest ? nearest : "",
                       nearest ? "'?" : "");
 }
 
@@ -84,7 +88,8 @@ static bool joints_resolve(struct maker *m, const struct named *named)
         /* Two parents would be a loop, which URDF cannot say. */
         if (child->joint >= 0)
             return err_set_at(m->e, ERR_DATA, robot->path, joint->line,
-                              "link '%.100s' has two parents: joints '%.100s' and '%.100s'; loops are not URDF",
+                              "link '%.100s' has two parents: joints '%.100s' and '%.100s'; loops "
+                              "are not URDF",
                               child->name, robot->joint[child->joint].name, joint->name);
         child->joint = j;
     }
@@ -101,12 +106,14 @@ static bool root_find(struct maker *m, int *root)
         /* A second one: the robot is in two pieces. */
         if (*root >= 0)
             return err_set_at(m->e, ERR_DATA, robot->path, robot->link[i].line,
-                              "two roots: no joint carries link '%.100s', nor '%.100s' on line %d", robot->link[i].name,
+                              "two roots: no joint carries link '%.100s', nor '%.100s' on line "
+                              "%d", robot->link[i].name,
                               robot->link[*root].name, robot->link[*root].line);
         *root = i;
     }
     return *root >= 0 || err_set_at(m->e, ERR_DATA, robot->path, robot->link[0].line,
-                                    "every link is carried by a joint: the joints form a cycle through '%.100s'",
+                                    "every link is carried by a joint: the joints form a cycle "
+                                    "through '%.100s'",
                                     robot->link[0].name);
 }
 
@@ -121,7 +128,8 @@ static bool order_walk(struct maker *m, int root)
     int n = 0, top = 0;
     robot->order = TAKE(m->a, robot->nlink, int);
     for (int i = 0; i < robot->nlink; i++) first[i] = next[i] = -1;
-    for (int j = 0; j < robot->njoint; j++) { /* the file's last child comes first, so that the stack gives the first */
+    /* the file's last child comes first, so that the stack gives the first */
+    for (int j = 0; j < robot->njoint; j++) {
         next[robot->joint[j].child] = first[robot->joint[j].parent];
         first[robot->joint[j].parent] = robot->joint[j].child;
     }
@@ -138,21 +146,28 @@ static bool order_walk(struct maker *m, int root)
         /* Each link has one parent, so what is not reached hangs on itself. */
         if (!reached[i])
             return err_set_at(m->e, ERR_DATA, robot->path, robot->link[i].line,
-                              "link '%.100s' is not connected to the root '%.100s': its joints form a cycle",
+                              "link '%.100s' is not connected to the root '%.100s': its joints "
+                              "form a cycle",
                               robot->link[i].name, robot->link[root].name);
     return true;
 }
 
 /* Names, ends, root, order: each step relies on the one before. */
-bool urdf_tree(struct urdf_robot *robot, const struct urdf_names *names, struct arena *a, struct err *e)
+bool urdf_tree(struct urdf_robot *robot, const struct urdf_names *names, struct arena *a,
+               struct err *e)
 {
     struct maker maker = {robot, names, a, e}, *m = &maker;
-    if (robot->nlink == 0) return err_set_at(m->e, ERR_DATA, robot->path, 0, "the robot has no links");
+    if (robot->nlink == 0)
+        return err_set_at(m->e, ERR_DATA, robot->path, 0, "the robot has no links");
     /* Two sorted lists: links are looked up, joints only compared. */
-    struct named *links = TAKE(m->a, robot->nlink, struct named), *joints = TAKE(m->a, robot->njoint, struct named);
-    for (int i = 0; i < robot->nlink; i++) links[i] = (struct named){robot->link[i].name, robot->link[i].line, i};
-    for (int j = 0; j < robot->njoint; j++) joints[j] = (struct named){robot->joint[j].name, robot->joint[j].line, j};
+    struct named *links = TAKE(m->a, robot->nlink, struct named),
+                 *joints = TAKE(m->a, robot->njoint, struct named);
+    for (int i = 0; i < robot->nlink; i++)
+        links[i] = (struct named){robot->link[i].name, robot->link[i].line, i};
+    for (int j = 0; j < robot->njoint; j++)
+        joints[j] = (struct named){robot->joint[j].name, robot->joint[j].line, j};
     int root;
-    return names_sort(m, links, robot->nlink, "link") && names_sort(m, joints, robot->njoint, "joint") &&
-           joints_resolve(m, links) && root_find(m, &root) && order_walk(m, root);
+    return names_sort(m, links, robot->nlink, "link") &&
+           names_sort(m, joints, robot->njoint, "joint") && joints_resolve(m, links) &&
+           root_find(m, &root) && order_walk(m, root);
 }

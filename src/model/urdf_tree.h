@@ -14,8 +14,9 @@ struct urdf_names {
     struct urdf_name parent, child;
 };
 
-/* urdf_tree: look up `names` (njoint), and fill each joint's parent and child, each link's joint, and the order.
- * Returns false with ERR_DATA as urdf_read. */
-bool urdf_tree(struct urdf_robot *robot, const struct urdf_names *names, struct arena *a, struct err *e);
+/* urdf_tree: look up `names` (njoint), and fill each joint's parent and child, each link's joint,
+ * and the order. Returns false with ERR_DATA as urdf_read. */
+bool urdf_tree(struct urdf_robot *robot, const struct urdf_names *names, struct arena *a,
+               struct err *e);
 
 #endif

@@ -16,7 +16,8 @@ static const struct {
     const char *name;
     int nq, nv;
 } joint_table[JOINT_KINDS] = {
-    {"fixed", 0, 0}, {"revolute", 1, 1}, {"prismatic", 1, 1}, {"spherical", 4, 3}, {"floating", 7, 6}};
+    {"fixed", 0, 0}, {"revolute", 1, 1}, {"prismatic", 1, 1}, {"spherical", 4, 3}, {"floating", 7,
+     6}};
 
 const char *vector_joint_name(enum vector_joint joint) { return joint_table[joint].name; }
 int vector_joint_nq(enum vector_joint joint) { return joint_table[joint].nq; }
@@ -42,15 +43,18 @@ static bool numbers(struct reader *r, const struct node *map, const char *key, d
 }
 
 /* A list of n numbers, nested or not; required. */
-static const double *array_need(struct reader *r, const struct node *map, const char *key, int64_t n)
+static const double *array_need(struct reader *r, const struct node *map, const char *key,
+                                int64_t n)
 {
     const struct node *node = document_need(map, key, r->path, r->e);
     if (!node) return NULL;
-    /* Counted first: memory is taken for numbers that the file holds, not for those that its counts promise. */
+    /* Counted first: memory is taken for numbers that the file holds, not for those that its counts
+     * promise. */
     int64_t there = document_count(node);
     if (there < n) {
-        err_set_at(r->e, ERR_DATA, r->path, node->line, "'%s' has %lld of the %lld numbers expected (%.3g GB of them)",
-                   key, (long long)there, (long long)n, (double)n * sizeof(double) / 1e9);
+        err_set_at(r->e, ERR_DATA, r->path, node->line,
+                   "'%s' has %lld of the %lld numbers expected (%.3g GB of them)", key,
+                   (long long)there, (long long)n, (double)n * sizeof(double) / 1e9);
         return NULL;
     }
     double *x = TAKE(r->a, n > 0 ? n : 1, double);
@@ -58,7 +62,8 @@ static const double *array_need(struct reader *r, const struct node *map, const 
 }
 
 /* The same when the file may leave it out: true and NULL. */
-static bool array_maybe(struct reader *r, const struct node *map, const char *key, int64_t n, const double **x)
+static bool array_maybe(struct reader *r, const struct node *map, const char *key, int64_t n,
+                        const double **x)
 {
     *x = NULL;
     if (!document_find(map, key)) return true;
@@ -67,7 +72,8 @@ static bool array_maybe(struct reader *r, const struct node *map, const char *ke
 }
 
 /* The rotation comes twice: the quaternion counts, and R must agree with it. */
-static bool frame_read(struct reader *r, const struct node *map, const char *key, struct vector_frame *f)
+static bool frame_read(struct reader *r, const struct node *map, const char *key,
+                       struct vector_frame *f)
 {
     const struct node *node = document_need(map, key, r->path, r->e);
     if (!node || !numbers(r, node, "p", f->p, 3) || !numbers(r, node, "quat", f->quat, 4) ||
@@ -93,7 +99,8 @@ static bool joint_read(struct reader *r, const struct node *body, struct vector_
     while (k < JOINT_KINDS && strcmp(type, joint_table[k].name) != 0) k++;
     if (k == JOINT_KINDS)
         return err_set_at(r->e, ERR_DATA, r->path, joint->line,
-                          "unknown joint type '%.40s'; known: fixed, revolute, prismatic, spherical, floating", type);
+                          "unknown joint type '%.40s'; known: fixed, revolute, prismatic, "
+                          "spherical, floating", type);
     b->joint = (enum vector_joint)k;
     if (b->joint != VECTOR_REVOLUTE && b->joint != VECTOR_PRISMATIC) return true;
     if (!numbers(r, joint, "axis", b->axis, 3)) return false;
@@ -107,8 +114,9 @@ static bool body_read(struct reader *r, const struct node *node, int i, struct v
 {
     b->line = node->line;
     b->name = document_text(node, "link_name");
-    return document_integer(node, "parent", r->path, -1, i - 1, &b->parent, r->e) && joint_read(r, node, b) &&
-           frame_read(r, node, "placement", &b->placement) && document_number(node, "mass", r->path, &b->mass, r->e) &&
+    return document_integer(node, "parent", r->path, -1, i - 1, &b->parent, r->e) &&
+           joint_read(r, node, b) && frame_read(r, node, "placement", &b->placement) &&
+           document_number(node, "mass", r->path, &b->mass, r->e) &&
            numbers(r, node, "com", b->com, 3) && numbers(r, node, "inertia_com", b->inertia, 6);
 }
 
@@ -143,17 +151,20 @@ static bool counts_check(struct reader *r, const struct node *root, const struct
         !document_integer(root, "nv", r->path, 0, 6 * MAX_BODIES, &nv, r->e))
         return false;
     if (nq == c->nq && nv == c->nv) return true;
-    return err_set_at(r->e, ERR_DATA, r->path, root->line, "nq, nv = %d, %d do not fit the joints, which have %d, %d",
-                      nq, nv, c->nq, c->nv);
+    return err_set_at(r->e, ERR_DATA, r->path, root->line,
+                      "nq, nv = %d, %d do not fit the joints, which have %d, %d", nq, nv, c->nq,
+                      c->nv);
 }
 
 /* Rows stay as written, [linear; angular] in axes of frame a: room dynamics reorders them. */
-static bool loop_read(struct reader *r, const struct node *node, int nbody, struct vector_loop *loop)
+static bool loop_read(struct reader *r, const struct node *node, int nbody,
+                      struct vector_loop *loop)
 {
     const struct node *rows = document_need(node, "rows", r->path, r->e);
     if (!rows) return false;
     /* Six rows fix a body to the other; more would only repeat them. */
-    if (rows->kind != NODE_LIST || rows->count < 1 || rows->count > 6) return fail(r, rows, "a loop has 1 to 6 rows");
+    if (rows->kind != NODE_LIST || rows->count < 1 || rows->count > 6)
+        return fail(r, rows, "a loop has 1 to 6 rows");
     /* The loop's own line, where the model's checks point. */
     loop->line = node->line;
     loop->nrow = rows->count;
@@ -162,7 +173,8 @@ static bool loop_read(struct reader *r, const struct node *node, int nbody, stru
         if (!document_flat(row, "rows", r->path, loop->row[k], 6, r->e)) return false;
     return document_integer(node, "body_a", r->path, -1, nbody - 1, &loop->body_a, r->e) &&
            document_integer(node, "body_b", r->path, -1, nbody - 1, &loop->body_b, r->e) &&
-           frame_read(r, node, "frame_a", &loop->frame_a) && frame_read(r, node, "frame_b", &loop->frame_b);
+           frame_read(r, node, "frame_a", &loop->frame_a) &&
+           frame_read(r, node, "frame_b", &loop->frame_b);
 }
 
 /* Trees leave the list out; `bodies` is then the whole system. */
@@ -185,15 +197,20 @@ static bool loops_read(struct reader *r, const struct node *root, struct vector_
 static bool state_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     /* Each is read only if those before it were good: one error, the first. */
-    bool good = (c->q = array_need(r, root, "q", c->nq)) && (c->qd = array_need(r, root, "qd", c->nv)) &&
-                array_maybe(r, root, "qdd", c->nv, &c->qdd) && array_maybe(r, root, "tau", c->nv, &c->tau) &&
+    bool good = (c->q = array_need(r, root, "q", c->nq)) &&
+                (c->qd = array_need(r, root, "qd", c->nv)) &&
+                array_maybe(r, root, "qdd", c->nv, &c->qdd) &&
+                array_maybe(r, root, "tau", c->nv, &c->tau) &&
                 array_maybe(r, root, "f_ext", 6 * c->nbody, &c->external) &&
                 array_maybe(r, root, "joint_spring", c->nv, &c->spring) &&
                 array_maybe(r, root, "joint_spring_q0", c->nv, &c->spring_q0) &&
                 array_maybe(r, root, "joint_damping", c->nv, &c->damping);
     /* Half a spring would be a guess. nq = nv rules out quaternions, which have no rest angle. */
-    if (good && (c->spring || c->damping) && !(c->spring && c->spring_q0 && c->damping && c->nq == c->nv))
-        return fail(r, root, "springs need joint_spring, joint_spring_q0 and joint_damping, and 1-DOF joints only");
+    if (good && (c->spring || c->damping) &&
+        !(c->spring && c->spring_q0 && c->damping && c->nq == c->nv))
+        return fail(
+            r, root,
+            "springs need joint_spring, joint_spring_q0 and joint_damping, and 1-DOF joints only");
     return good;
 }
 
@@ -208,9 +225,9 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
         /* In world axes, without gravity: what an observer would see. */
         struct vector_pose *p = &c->pose[c->npose++];
         if (!document_integer(node, "body", r->path, 0, c->nbody - 1, &p->body, r->e) ||
-            !numbers(r, node, "R", p->R, 9) || !numbers(r, node, "p", p->p, 3) || !numbers(r, node, "v", p->v, 3) ||
-            !numbers(r, node, "w", p->w, 3) || !numbers(r, node, "a", p->a, 3) ||
-            !numbers(r, node, "alpha", p->alpha, 3))
+            !numbers(r, node, "R", p->R, 9) || !numbers(r, node, "p", p->p, 3) ||
+            !numbers(r, node, "v", p->v, 3) || !numbers(r, node, "w", p->w, 3) ||
+            !numbers(r, node, "a", p->a, 3) || !numbers(r, node, "alpha", p->alpha, 3))
             return false;
     }
     return true;
@@ -219,7 +236,8 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
 /* Each group as a whole, or not at all. */
 static bool totals_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
-    const struct node *energy = document_find(root, "energy"), *momentum = document_find(root, "momentum");
+    const struct node *energy = document_find(root, "energy"),
+                      *momentum = document_find(root, "momentum");
     /* Presence is told apart from zero. */
     c->has_energy = energy != NULL;
     c->has_momentum = momentum != NULL;
@@ -241,7 +259,8 @@ static double number_or_nan(const struct node *map, const char *key)
     return node && node->kind == NODE_NUMBER ? node->number : NAN;
 }
 
-/* The smaller of the two, ignoring "no answer"; libraries run in more than double precision do not compete. */
+/* The smaller of the two, ignoring "no answer"; libraries run in more than double precision do not
+ * compete. */
 static void peer_compete(struct vector_peer *best, double error, const char *name)
 {
     /* "Not larger or equal" is true against NAN: any number wins over no number. */
@@ -251,7 +270,8 @@ static void peer_compete(struct vector_peer *best, double error, const char *nam
 /* How well other libraries do in double: for people who compare. */
 static void peers_read(const struct node *root, struct vector_case *c)
 {
-    const struct node *list = document_find(root, "peers"), *floor = document_find(root, "input_rounding_floor");
+    const struct node *list = document_find(root, "peers"),
+                      *floor = document_find(root, "input_rounding_floor");
     /* How much rounding of the inputs alone changes the answers. */
     c->floor_id = number_or_nan(floor, "tau_id");
     c->floor_fd = number_or_nan(floor, "qdd_fd");
@@ -298,7 +318,8 @@ static bool digits_read(struct reader *r, const struct node *root, struct vector
         double *x = TAKE(r->a, (size_t)n + 1, double);
         /* Otherwise a shifted list would be compared number by number. */
         if (state->kind != NODE_LIST || state->count != n)
-            return fail(r, state, "a state of 'states_45_digits' must hold all numbers of q and qd");
+            return fail(r, state,
+                        "a state of 'states_45_digits' must hold all numbers of q and qd");
         int i = 0;
         for (const struct node *digit = state->child; digit; digit = digit->next, i++) {
             char *end = NULL;
@@ -319,7 +340,8 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
     const struct node *states = document_need(trajectory, "states", r->path, r->e);
     if (!states) return false;
     int n = states->count, k = 0;
-    if (states->kind != NODE_LIST || n < 1) return fail(r, states, "'states' must be a list of states");
+    if (states->kind != NODE_LIST || n < 1)
+        return fail(r, states, "'states' must be a list of states");
     const double *time = array_need(r, trajectory, "times", n);
     /* Of the reference itself: its own error, and how fast errors grow. Either may be missing. */
     const double *accuracy, *sensitivity;
@@ -329,7 +351,8 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
     c->instant = TAKE(r->a, n, struct vector_instant);
     c->ninstant = n;
     for (const struct node *node = states->child; node; node = node->next, k++) {
-        c->instant[k] = (struct vector_instant){.time = time[k], .accuracy = accuracy ? accuracy[k] : NAN,
+        c->instant[k] = (struct vector_instant){.time = time[k],
+                                                .accuracy = accuracy ? accuracy[k] : NAN,
                                                 .sensitivity = sensitivity ? sensitivity[k] : NAN};
         if (!instant_read(r, node, c, &c->instant[k])) return false;
         /* Integrators go from one time to the next, so each must be later. */
@@ -341,12 +364,14 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
 /* All of them may be missing; vector_check.c says which should not. */
 static bool answers_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
-    return array_maybe(r, root, "tau_id", c->nv, &c->tau_id) && array_maybe(r, root, "qdd_fd", c->nv, &c->qdd_fd) &&
-           array_maybe(r, root, "bias", c->nv, &c->bias) && array_maybe(r, root, "lambda", c->nrow, &c->lambda) &&
+    return array_maybe(r, root, "tau_id", c->nv, &c->tau_id) &&
+           array_maybe(r, root, "qdd_fd", c->nv, &c->qdd_fd) &&
+           array_maybe(r, root, "bias", c->nv, &c->bias) &&
+           array_maybe(r, root, "lambda", c->nrow, &c->lambda) &&
            array_maybe(r, root, "gravity_torque", c->nv, &c->gravity_torque) &&
            array_maybe(r, root, "M", size_count(c->nv, c->nv), &c->mass_matrix) &&
-           array_maybe(r, root, "joint_wrench_id", 6 * c->nbody, &c->joint_wrench) && totals_read(r, root, c) &&
-           poses_read(r, root, c) && trajectory_read(r, root, c);
+           array_maybe(r, root, "joint_wrench_id", 6 * c->nbody, &c->joint_wrench) &&
+           totals_read(r, root, c) && poses_read(r, root, c) && trajectory_read(r, root, c);
 }
 
 /* An answer without its question cannot be checked. */

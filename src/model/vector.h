@@ -1,8 +1,9 @@
-/* vector.h - reference vectors: a multibody system, a state, and answers computed by others with 77 digits.
+/* vector.h - reference vectors: a multibody system, a state, and answers computed by others with 77
+ * digits.
  *
- * The format is dynref-1 (JSON, SI units); tests/data/vectors/README.md states its conventions. What is read here is
- * kept as written: spatial vectors linear first, quaternions [x, y, z, w], bodies in their own frames. vector_model.h
- * makes a model and a state of it. */
+ * The format is dynref-1 (JSON, SI units); tests/data/vectors/README.md states its conventions.
+ * What is read here is kept as written: spatial vectors linear first, quaternions [x, y, z, w],
+ * bodies in their own frames. vector_model.h makes a model and a state of it. */
 #ifndef MODEL_VECTOR_H
 #define MODEL_VECTOR_H
 
@@ -40,7 +41,8 @@ struct vector_body {
     int q, v;                      /* where its coordinates begin in the stacked vectors */
 };
 
-/* row . [a_b - a_a; alpha_b - alpha_a] = 0 in the axes of frame a, accelerations of the loop points. */
+/* row . [a_b - a_a; alpha_b - alpha_a] = 0 in the axes of frame a, accelerations of the loop
+ * points. */
 struct vector_loop {
     int body_a, body_b;            /* -1: the world */
     struct vector_frame frame_a, frame_b;
@@ -60,7 +62,8 @@ struct vector_instant {
     const double *q, *qd;
     double energy[3];              /* kinetic, potential with springs, total */
     double linear[3], angular[3];  /* momentum, the angular one about the world's origin */
-    const double *digits;          /* (nq + nv) q and qd as written with 45 digits, NULL: the file has none */
+    /* (nq + nv) q and qd as written with 45 digits, NULL: the file has none */
+    const double *digits;
     double accuracy;               /* bound of the reference's own error */
     double sensitivity;            /* growth of an initial error until now */
 };
@@ -71,7 +74,8 @@ struct vector_peer {
     const char *name;
 };
 
-/* Arrays are borrowed from the arena of vector_read; answers that the file does not hold are NULL or NAN. */
+/* Arrays are borrowed from the arena of vector_read; answers that the file does not hold are NULL
+ * or NAN. */
 struct vector_case {
     const char *path, *name, *group, *urdf;
     int urdf_line;                 /* where the URDF file is named */
@@ -82,17 +86,20 @@ struct vector_case {
     int nloop;
     struct vector_loop *loop;
     const double *q, *qd, *qdd, *tau;
-    const double *external;        /* (nbody x 6) wrench [f; n] on the body, body axes, at its origin */
+    /* (nbody x 6) wrench [f; n] on the body, body axes, at its origin */
+    const double *external;
     const double *spring, *spring_q0, *damping; /* (nv) */
 
     const double *tau_id, *qdd_fd, *bias, *gravity_torque, *lambda;
     const double *mass_matrix;     /* (nv x nv) */
-    const double *joint_wrench;    /* (nbody x 6) [f; n] from the parent on the body, body axes, at its origin */
+    /* (nbody x 6) [f; n] from the parent on the body, body axes, at its origin */
+    const double *joint_wrench;
     double kinetic, potential, linear[3], angular[3], com_world[3], total_mass;
     bool has_energy, has_momentum, has_com;
     int npose;
     struct vector_pose *pose;
-    double floor_id, floor_fd;     /* change of the exact answers when inputs are rounded, as the file says */
+    /* change of the exact answers when inputs are rounded, as the file says */
+    double floor_id, floor_fd;
     struct vector_peer peer_id, peer_fd;
 
     int ninstant;                  /* trajectories only */
@@ -101,12 +108,14 @@ struct vector_case {
 
 /* vector_read: read a dynref-1 file into *c, all memory from `a`.
  *
- *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): syntax, a missing field, a wrong count, an
- *   unknown joint type, a parent that does not come before its child, a number that is not finite, a key that is not
- * the format's, a rotation that is not its quaternion's. Bodies need not be physical: some reference robots are not. */
+ *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): syntax, a missing field, a
+ * wrong count, an unknown joint type, a parent that does not come before its child, a number that
+ * is not finite, a key that is not the format's, a rotation that is not its quaternion's. Bodies
+ * need not be physical: some reference robots are not. */
 bool vector_read(const char *path, struct vector_case *c, struct arena *a, struct err *e);
 
-/* vector_joint_name: "revolute", ... ; vector_joint_nq, vector_joint_nv: its coordinates and degrees of freedom. */
+/* vector_joint_name: "revolute", ... ; vector_joint_nq, vector_joint_nv: its coordinates and
+ * degrees of freedom. */
 const char *vector_joint_name(enum vector_joint joint);
 int vector_joint_nq(enum vector_joint joint);
 int vector_joint_nv(enum vector_joint joint);

@@ -6,17 +6,21 @@
 
 #include "base/text.h"
 
-/* --- known keys -------------------------------------------------------------------------------------------------- */
+/* --- known keys ------------------------------------------------------------------------------- */
 
 /* Every key of the format, read or not: what is not here is a mistake. */
 static const char *const file_keys[] = {
-    "format", "name", "group", "note", "comment", "source", "seed", "answers", "urdf", "gravity", "nq", "nv", "bodies",
-    "loops", "q", "qd", "qdd", "tau", "f_ext", "joint_spring", "joint_spring_q0", "joint_damping", "tau_id", "qdd_fd",
-    "lambda", "bias", "gravity_torque", "M", "energy", "momentum", "com_world", "total_mass", "fk", "joint_wrench_id",
-    "input_rounding_floor", "peers", "loop_position_residual", "loop_velocity_residual", "trajectory",
+    "format", "name", "group", "note", "comment", "source", "seed", "answers", "urdf", "gravity",
+    "nq", "nv", "bodies",
+    "loops", "q", "qd", "qdd", "tau", "f_ext", "joint_spring", "joint_spring_q0", "joint_damping",
+    "tau_id", "qdd_fd",
+    "lambda", "bias", "gravity_torque", "M", "energy", "momentum", "com_world", "total_mass", "fk",
+    "joint_wrench_id",
+    "input_rounding_floor", "peers", "loop_position_residual", "loop_velocity_residual",
+    "trajectory",
     "states_45_digits", NULL};
-static const char *const body_keys[] = {"parent", "joint", "placement", "mass", "com", "inertia_com", "link_name",
-                                        "joint_name", NULL};
+static const char *const body_keys[] = {"parent",      "joint",     "placement",  "mass", "com",
+                                        "inertia_com", "link_name", "joint_name", NULL};
 static const char *const joint_keys[] = {"type", "axis", NULL};
 static const char *const frame_keys[] = {"p", "quat", "R", NULL};
 static const char *const loop_keys[] = {"body_a", "body_b", "frame_a", "frame_b", "rows", NULL};
@@ -24,8 +28,12 @@ static const char *const energy_keys[] = {"kinetic", "potential", "total", NULL}
 static const char *const momentum_keys[] = {"linear", "angular_about_world_origin", NULL};
 static const char *const pose_keys[] = {"body", "R", "p", "v", "w", "a", "alpha", NULL};
 static const char *const floor_keys[] = {"tau_id", "qdd_fd", NULL};
-static const char *const trajectory_keys[] = {"method", "times", "states", "verified_accuracy_max_abs_diff",
-                                              "sensitivity_to_initial_state", "relative_energy_drift_of_reference",
+static const char *const trajectory_keys[] = {"method",
+                                              "times",
+                                              "states",
+                                              "verified_accuracy_max_abs_diff",
+                                              "sensitivity_to_initial_state",
+                                              "relative_energy_drift_of_reference",
                                               NULL};
 static const char *const state_keys[] = {"q", "qd", "energy", "momentum", NULL};
 
@@ -42,7 +50,8 @@ struct checker {
     struct err *e;
 };
 
-/* Every key of `map` is among `known`; a map that is missing or of another kind is for its reader to refuse. */
+/* Every key of `map` is among `known`; a map that is missing or of another kind is for its reader
+ * to refuse. */
 static bool known(const struct checker *c, const struct node *map, const char *const *name)
 {
     if (!map || map->kind != NODE_MAP) return true;
@@ -100,7 +109,8 @@ static bool answers_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next) {
         /* A made-up mapping with that key, for the same message. */
-        struct node key = {.kind = NODE_MAP, .child = &(struct node){.line = x->line, .key = x->text ? x->text : ""}};
+        struct node key = {.kind = NODE_MAP,
+                           .child = &(struct node){.line = x->line, .key = x->text ? x->text : ""}};
         if (!known(c, &key, file_keys)) return false;
     }
     return true;
@@ -114,15 +124,17 @@ bool vector_check_keys(const struct node *root, const char *path, struct err *e)
     for (const struct node *x = fk ? fk->child : NULL; x; x = x->next)
         if (!known(&c, x, pose_keys)) return false;
     return known(&c, root, file_keys) && answers_known(&c, document_find(root, "answers")) &&
-           bodies_known(&c, document_find(root, "bodies")) && loops_known(&c, document_find(root, "loops")) &&
-           totals_known(&c, root) && known(&c, document_find(root, "input_rounding_floor"), floor_keys) &&
+           bodies_known(&c, document_find(root, "bodies")) &&
+           loops_known(&c, document_find(root, "loops")) && totals_known(&c, root) &&
+           known(&c, document_find(root, "input_rounding_floor"), floor_keys) &&
            trajectory_known(&c, document_find(root, "trajectory"));
 }
 
-/* --- what is given twice ----------------------------------------------------------------------------------------- */
+/* --- what is given twice ---------------------------------------------------------------------- */
 
 /* R is there for readers without quaternions; both must be the same rotation. */
-bool vector_check_frame(const struct vector_frame *f, const struct node *at, const char *path, struct err *e)
+bool vector_check_frame(const struct vector_frame *f, const struct node *at, const char *path,
+                        struct err *e)
 {
     const double x = f->quat[0], y = f->quat[1], z = f->quat[2], w = f->quat[3];
     /* s = 2 / |quat|^2 normalises, since the quaternion is off by rounding. R is rounded once,
@@ -137,13 +149,13 @@ bool vector_check_frame(const struct vector_frame *f, const struct node *at, con
         if (fabs(R[k] - f->R[k]) <= few) continue;
         text_real(is, f->R[k]);
         text_real(turned, R[k]);
-        return err_set_at(e, ERR_DATA, path, at->line, "number %d of 'R' is %s, but 'quat' turns it into %s", k + 1, is,
-                          turned);
+        return err_set_at(e, ERR_DATA, path, at->line,
+                          "number %d of 'R' is %s, but 'quat' turns it into %s", k + 1, is, turned);
     }
     return true;
 }
 
-/* --- what is missing --------------------------------------------------------------------------------------------- */
+/* --- what is missing -------------------------------------------------------------------------- */
 
 /* Does the file say that it has other answers than all, and not this one? */
 static bool left_out(const struct vector_case *c, const char *key)
@@ -180,12 +192,13 @@ bool vector_complete(const struct vector_case *c, struct err *e)
         bool absent = left_out(c, answer[k].key);
         /* A list 'answers' must be the truth both ways: all that it names, and nothing else. */
         if (answer[k].given && absent)
-            return err_set_at(e, ERR_DATA, c->path, c->declared->line, "'%s' is given, but not in the list 'answers'",
-                              answer[k].key);
+            return err_set_at(e, ERR_DATA, c->path, c->declared->line,
+                              "'%s' is given, but not in the list 'answers'", answer[k].key);
         /* A list decides alone; without one the format's promise does. */
         if (answer[k].given || (c->declared ? absent : !answer[k].needed)) continue;
         return err_set_at(e, ERR_DATA, c->path, c->declared ? c->declared->line : 1,
-                          "the answer '%s' is missing; a file without it lists what it has in 'answers'",
+                          "the answer '%s' is missing; a file without it lists what it has in "
+                          "'answers'",
                           answer[k].key);
     }
     return true;

@@ -24,8 +24,11 @@ static struct body_def body_from(const struct vector_case *c, int i)
                                              [VECTOR_SPHERICAL] = JOINT_SPHERICAL,
                                              [VECTOR_FLOATING] = JOINT_FLOATING};
     const struct vector_body *b = &c->body[i];
-    struct body_def def = {.parent = b->parent, .joint = joint[b->joint], .placement = frame_from(&b->placement),
-                           .mass = b->mass, .line = b->line};
+    struct body_def def = {.parent = b->parent,
+                           .joint = joint[b->joint],
+                           .placement = frame_from(&b->placement),
+                           .mass = b->mass,
+                           .line = b->line};
     /* Files without names: numbered, as generated models. */
     if (b->name[0])
         text_copy(def.name, sizeof def.name, b->name);
@@ -47,8 +50,12 @@ static struct body_def body_from(const struct vector_case *c, int i)
 static struct loop_def loop_from(const struct vector_case *c, int i)
 {
     const struct vector_loop *l = &c->loop[i];
-    struct loop_def def = {.body_a = l->body_a, .body_b = l->body_b, .frame_a = frame_from(&l->frame_a),
-                           .frame_b = frame_from(&l->frame_b), .nrow = l->nrow, .line = l->line};
+    struct loop_def def = {.body_a = l->body_a,
+                           .body_b = l->body_b,
+                           .frame_a = frame_from(&l->frame_a),
+                           .frame_b = frame_from(&l->frame_b),
+                           .nrow = l->nrow,
+                           .line = l->line};
     /* Loops have no names in the format. */
     snprintf(def.name, sizeof def.name, "loop %d", i);
     memcpy(def.row, l->row, sizeof def.row);
@@ -99,7 +106,8 @@ struct model *vector_model_build(const struct model_spec *spec, struct arena *a,
 }
 
 /* The file has been read for the model: it fails here only if it has changed since. */
-struct state *vector_state_make(const struct model *m, const struct model_spec *spec, struct arena *a, struct err *e)
+struct state *vector_state_make(const struct model *m, const struct model_spec *spec,
+                                struct arena *a, struct err *e)
 {
     struct vector_case c;
     return vector_read(spec->path, &c, a, e) ? vector_state(&c, m, a) : NULL;

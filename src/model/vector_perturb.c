@@ -26,7 +26,10 @@ static void shake_by(const struct shaker *s, double *x, int n, double scale)
 }
 
 /* A vector's components share one scale: its direction is as uncertain as its length. */
-static void shake_vector(const struct shaker *s, double *x, int n) { shake_by(s, x, n, length_of(x, n)); }
+static void shake_vector(const struct shaker *s, double *x, int n)
+{
+    shake_by(s, x, n, length_of(x, n));
+}
 
 /* Each by itself; so what is zero stays zero. */
 static void shake_numbers(const struct shaker *s, double *x, int n)
@@ -65,8 +68,8 @@ static double *copied_numbers(struct arena *a, const double *x, int n)
 }
 
 /* Numbers over the degrees of freedom: those of one joint, linear and angular, are vectors. */
-static const double *shaken_joints(const struct shaker *s, const struct vector_case *c, const double *x,
-                                   struct arena *a)
+static const double *shaken_joints(const struct shaker *s, const struct vector_case *c,
+                                   const double *x, struct arena *a)
 {
     /* A floating joint has two vectors of three, others one of all. */
     double *y = copied_numbers(a, x, c->nv);
@@ -78,7 +81,8 @@ static const double *shaken_joints(const struct shaker *s, const struct vector_c
 }
 
 /* A floating joint's place and turn have scales of their own. */
-static const double *shaken_coordinates(const struct shaker *s, const struct vector_case *c, struct arena *a)
+static const double *shaken_coordinates(const struct shaker *s, const struct vector_case *c,
+                                        struct arena *a)
 {
     double *q = copied_numbers(a, c->q, c->nq);
     for (int i = 0; i < c->nbody; i++) {
@@ -110,7 +114,8 @@ static void shake_loops(const struct shaker *s, struct vector_case *c)
         struct vector_loop *l = &c->loop[i];
         shake_frame(s, &l->frame_a);
         shake_frame(s, &l->frame_b);
-        for (int k = 0; k < l->nrow; k++) shake_vector(s, l->row[k], 3), shake_vector(s, l->row[k] + 3, 3);
+        for (int k = 0; k < l->nrow; k++)
+            shake_vector(s, l->row[k], 3), shake_vector(s, l->row[k] + 3, 3);
     }
 }
 
@@ -124,7 +129,8 @@ static struct vector_case *copy_with_bodies(const struct vector_case *c, struct 
 }
 
 /* Every input, none of the answers. */
-struct vector_case *vector_perturb(const struct vector_case *c, double size, struct random *r, struct arena *a)
+struct vector_case *vector_perturb(const struct vector_case *c, double size, struct random *r,
+                                   struct arena *a)
 {
     const struct shaker s = {size, r};
     /* Bodies and loops are our own copies now. */
@@ -140,9 +146,12 @@ struct vector_case *vector_perturb(const struct vector_case *c, double size, str
     double *external = copied_numbers(a, c->external, 6 * c->nbody);
     for (int i = 0; external && i < 2 * c->nbody; i++) shake_vector(&s, external + 3 * i, 3);
     x->external = external;
-    double *spring = copied_numbers(a, c->spring, c->nv), *rest = copied_numbers(a, c->spring_q0, c->nv);
+    double *spring = copied_numbers(a, c->spring, c->nv),
+           *rest = copied_numbers(a, c->spring_q0, c->nv);
     double *damping = copied_numbers(a, c->damping, c->nv);
-    if (spring) shake_numbers(&s, spring, c->nv), shake_numbers(&s, rest, c->nv), shake_numbers(&s, damping, c->nv);
+    if (spring)
+        shake_numbers(&s, spring, c->nv), shake_numbers(&s, rest, c->nv),
+            shake_numbers(&s, damping, c->nv);
     x->spring = spring;
     x->spring_q0 = rest;
     x->damping = damping;

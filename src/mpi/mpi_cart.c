@@ -230,8 +230,8 @@ int mpi_cart_map(struct mpi_rank *self, MPI_Comm comm, int ndims, const int dims
  * of those still free. */
 static bool balance(int nodes, int n, int *out);
 
-/* Whether divisor `first` may be the largest of the n; *best is the last one that was tried. Products
- * are compared as doubles, exact far beyond any number of ranks. */
+/* Whether divisor `first` may be the largest of the n; *best is the last one that was tried.
+ * Products are compared as doubles, exact far beyond any number of ranks. */
 static bool is_largest(int nodes, int n, int first, int *best, int *out)
 {
     double power = 1;

@@ -61,8 +61,8 @@ static int send(struct mpi_rank *r, struct mpi_request *q)
         mpi_charge_copy(r, bytes);
     }
     /* Modes of section 3.4. Synchronous sends wait until they are matched. Those of
-     * buffered ones are the buffer's, so that the call is local whatever the size. Ready sends go as
-     * standard ones: that the receive is posted is the program's promise. */
+     * buffered ones are the buffer's, so that the call is local whatever the size. Ready sends go
+     * as standard ones: that the receive is posted is the program's promise. */
     int to = world_rank(c, q->peer);
     int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, q->tag);
     if (q->mode == MODE_SYNCHRONOUS) comm_isend_synchronous(r->comm, to, tag, data, bytes, &q->q);

@@ -36,8 +36,8 @@
 
 /* Results are 0 or 1 in the type of the operands. */
 #define LOGICAL(class, type)                                                                       \
-    ONE(land, class, type, a != 0 && b != 0, 1)                                                               \
-    ONE(lor, class, type, a != 0 || b != 0, 1)                                                               \
+    ONE(land, class, type, a != 0 && b != 0, 1)                                                    \
+    ONE(lor, class, type, a != 0 || b != 0, 1)                                                     \
     ONE(lxor, class, type, (a != 0) != (b != 0), 1)
 
 /* Not for floating-point numbers, whose bits mean nothing here. */
@@ -177,8 +177,8 @@ static bool is_standard(const struct mpi_op *op) { return op >= standard && op <
 
 /* --- the program's functions --- */
 
-/* call: inout = in op inout, as the standard has it; `into` comes from higher ranks when `before`.
- */
+/* call: inout = in op inout, as the standard has it; `into` comes from higher ranks when
+ * `before`. */
 static void call(struct mpi_reduction *x, const void *in, void *inout, int64_t n)
 {
     /* The function gets pointers to length and type (section 6.9.5). Functions made by

@@ -1,9 +1,10 @@
 /* net.h - what every network level provides: messages in, arrival times out.
  *
- * Contract with the virtual processors: net_send is called with an injection-ready time that is never earlier than
- * the time of the event being dispatched. The level answers through `deliver`, either at once (the time is known:
- * loggp) or from an event. `arrival` is when the tail is in the destination's memory, before o_r. All nodes and
- * links are reached through arguments; there is no global state. Semantics of the levels: docs/network.md. */
+ * Contract with the virtual processors: net_send is called with an injection-ready time that is
+ * never earlier than the time of the event being dispatched. The level answers through `deliver`,
+ * either at once (the time is known: loggp) or from an event. `arrival` is when the tail is in the
+ * destination's memory, before o_r. All nodes and links are reached through arguments; there is no
+ * global state. Semantics of the levels: docs/network.md. */
 #ifndef NET_NET_H
 #define NET_NET_H
 
@@ -20,22 +21,27 @@ struct topology;
 struct path_log;
 struct net;
 
-/* Lanes of the levels' events: deliveries and freed resources, starts of messages, arriving heads, arbitration.
- * Who calls net_send with ready == sim_now must itself be in a lane <= NET_LANE_START. */
+/* Lanes of the levels' events: deliveries and freed resources, starts of messages, arriving heads,
+ * arbitration. Who calls net_send with ready == sim_now must itself be in a lane <=
+ * NET_LANE_START. */
 enum { NET_LANE_FREE = 16, NET_LANE_START = 32, NET_LANE_HEAD = 48, NET_LANE_ARBITRATE = 64 };
 
-/* One message on its way; embedded in the mailbox's own struct, which stays in place until deliver. */
+/* One message on its way; embedded in the mailbox's own struct, which stays in place until
+ * deliver. */
 struct net_message {
     int src, dst;       /* nodes (not ranks, not routers) */
-    int processor;      /* of the source node that sends: the own messages of `uncontended` are its */
+    /* of the source node that sends: the own messages of `uncontended` are its */
+    int processor;
     int64_t bytes;      /* payload >= 0 */
     int64_t id;         /* unique and deterministic: breaks ties; (source, count) order */
     sim_ps ready;       /* when the source may start injecting */
     sim_ps injected;    /* out: when injection began */
     sim_ps arrival;     /* out: when the tail arrived */
-    sim_ps uncontended; /* out: when it would have arrived had no other message (of another rank) been in its way;
-                           the sender's own gap g and port are part of it, as in LogGP */
-    uint32_t path;      /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
+    sim_ps
+        uncontended; /* out: when it would have arrived had no other message (of another rank) been
+                        in its way; the sender's own gap g and port are part of it, as in LogGP */
+    /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
+    uint32_t path;
 };
 
 typedef void net_deliver_fn(void *context, struct net_message *m);
@@ -46,9 +52,12 @@ struct net_type {
     bool (*create)(struct net *n, struct err *e);
     void (*send)(struct net *n, struct net_message *m);
     void (*occupy)(struct net *n, int link, sim_ps now, sim_ps busy); /* NULL: the level cannot */
-    bool (*deadlock)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
+    /* messages remain and no event: names the cycle */
+    bool (*deadlock)(const struct net *n, char *text, int size);
     bool asks; /* for others' messages when a message comes to a link (net_ask_others) */
-    bool paths; /* it says what binds at each resource (net_set_path); else its contention is one lump a message */
+    /* it says what binds at each resource (net_set_path); else its contention is one lump a
+     * message */
+    bool paths;
 };
 
 /* net_create: the level of `m->network` over `t`.
@@ -57,51 +66,56 @@ struct net_type {
  *   deliver     called once per message with `context`
  *   want_links  record link_load
  *
- *   Returns NULL with ERR_CONFIG when the level cannot run on this machine (buffer too small, ...). */
-struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
-                       net_deliver_fn *deliver, void *context, bool want_links, struct err *e);
+ *   Returns NULL with ERR_CONFIG when the level cannot run on this machine (buffer too small, ...).
+ */
+struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s,
+                       struct arena *a, net_deliver_fn *deliver, void *context, bool want_links,
+                       struct err *e);
 
 /* net_send: hand over a message; see the contract above. m is borrowed until deliver. */
 void net_send(struct net *n, struct net_message *m);
 
-/* net_set_in_order: whether the messages of each node are handed over in the order of their ready times, so that a
- * start needs no event. At first true if all messages are eager; never true where processors share a port. A processor
- * that runs ahead is in order with itself, but not with the data and answers of a rendezvous: the caller who expects
- * none may say true, and says false before its first, which then is late at ports that were promised ahead of its time.
- */
+/* net_set_in_order: whether the messages of each node are handed over in the order of their ready
+ * times, so that a start needs no event. At first true if all messages are eager; never true where
+ * processors share a port. A processor that runs ahead is in order with itself, but not with the
+ * data and answers of a rendezvous: the caller who expects none may say true, and says false before
+ * its first, which then is late at ports that were promised ahead of its time. */
 void net_set_in_order(struct net *n, bool in_order);
 
-/* net_share: the same network for one of several host threads that run ranks at once: it delivers with `context`, and
- * each node's messages are sent through one share alone. For level loggp in order, without a path log; memory from
- * `a`. */
+/* net_share: the same network for one of several host threads that run ranks at once: it delivers
+ * with `context`, and each node's messages are sent through one share alone. For level loggp in
+ * order, without a path log; memory from `a`. */
 struct net *net_share(const struct net *n, void *context, struct arena *a);
 
-/* net_foresee: call early(m, step) shortly before m is delivered, with the meaning of sim_foresee. Not every message is
- * announced, and not on every level. Call it before any message is sent. */
+/* net_foresee: call early(m, step) shortly before m is delivered, with the meaning of sim_foresee.
+ * Not every message is announced, and not on every level. Call it before any message is sent. */
 typedef void net_early_fn(const struct net_message *m, int step);
 void net_foresee(struct net *n, net_early_fn *early);
 
-/* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL: do not. Call it
- * before any message is sent. */
+/* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL:
+ * do not. Call it before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);
 
 /* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
 
-/* net_occupy: directed link `link` serves somebody else's traffic for `busy` from `now`, or from when it is free, first
- * come first served. Called at the time `now` of the event being dispatched. False: this level knows no such thing. */
+/* net_occupy: directed link `link` serves somebody else's traffic for `busy` from `now`, or from
+ * when it is free, first come first served. Called at the time `now` of the event being dispatched.
+ * False: this level knows no such thing. */
 bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
 
-/* net_others_fn: from when on `link` is free for a message that comes at `now`: `free`, or later when others' messages
- * came to it by then; those of the same instant go first. Asked with rising `now` for each link. */
+/* net_others_fn: from when on `link` is free for a message that comes at `now`: `free`, or later
+ * when others' messages came to it by then; those of the same instant go first. Asked with rising
+ * `now` for each link. */
 typedef sim_ps net_others_fn(void *context, int link, sim_ps now, sim_ps free);
 
-/* net_ask_others: ask `others` whenever a message comes to a link; instead of net_occupy at each of theirs, and with
- * the same outcome, but without an event for each. False: this level cannot. Call it before any message is sent. */
+/* net_ask_others: ask `others` whenever a message comes to a link; instead of net_occupy at each of
+ * theirs, and with the same outcome, but without an event for each. False: this level cannot. Call
+ * it before any message is sent. */
 bool net_ask_others(struct net *n, net_others_fn *others, void *context);
 
-/* net_deadlock: true when messages are in the network but no event can move them; `text` (size bytes) then names the
- * cycle of links. */
+/* net_deadlock: true when messages are in the network but no event can move them; `text` (size
+ * bytes) then names the cycle of links. */
 bool net_deadlock(const struct net *n, char *text, int size);
 
 /* net_links: the loads recorded so far, (*nlink) entries in the arena; 0 when not recorded. */

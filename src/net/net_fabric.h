@@ -1,7 +1,8 @@
-/* net_fabric.h - the records of the levels with buffers: messages on their routes, resources, FIFOs, packets.
+/* net_fabric.h - the records of the levels with buffers: messages on their routes, resources,
+ * FIFOs, packets.
  *
- * Zeroed memory is an idle resource, and what lies behind a resource is made when it is first used, so that untouched
- * nodes of a large machine cost next to nothing. */
+ * Zeroed memory is an idle resource, and what lies behind a resource is made when it is first used,
+ * so that untouched nodes of a large machine cost next to nothing. */
 #ifndef NET_NET_FABRIC_H
 #define NET_NET_FABRIC_H
 
@@ -10,7 +11,8 @@
 struct packet;
 struct flight;
 
-/* What has left a FIFO but whose credits may still be on their way: a line from (first flit, at) to (last, tail). */
+/* What has left a FIFO but whose credits may still be on their way: a line from (first flit, at) to
+ * (last, tail). */
 struct credit {
     struct credit *next;
     sim_ps at, tail;       /* when its first and last flit crossed the next resource */
@@ -22,7 +24,8 @@ struct credit {
 struct fifo {
     struct packet *front, *back;  /* packets that were not yet granted their next resource */
     struct credit *first, *last;  /* packets that were, oldest first */
-    sim_ps left;                  /* when the tail of the last one of these has left: the next may ask */
+    /* when the tail of the last one of these has left: the next may ask */
+    sim_ps left;
     sim_ps home;                  /* when all credits of these are back */
     sim_ps free;                  /* when the channel may be allocated to the next packet */
     uint32_t position;            /* flits that ever entered; wraps */
@@ -37,7 +40,8 @@ struct resource {
     struct fifo *fifo;            /* (channels) behind it, NULL until used */
     sim_ps turn_time;             /* when `turn` was last set */
     uint32_t turn;                /* round robin: input from which the next search starts */
-    struct pass *claim, *pending; /* auto: optimistic messages by time; detailed ones that have yet to pass */
+    /* auto: optimistic messages by time; detailed ones that have yet to pass */
+    struct pass *claim, *pending;
 };
 
 /* A node's messages that are not entirely injected, by (ready, id). */
@@ -55,7 +59,8 @@ struct pass {
     struct pass *next, *prev;     /* auto: in resource->claim or ->pending */
     struct flight *flight;
     sim_ps begin, end;            /* auto: of the claim */
-    sim_ps follow;                /* auto: from when another may follow in the same FIFO without noticing */
+    /* auto: from when another may follow in the same FIFO without noticing */
+    sim_ps follow;
     sim_ps last;                  /* when it was granted last */
     sim_ps flit;                  /* time of a flit */
     int resource, port;           /* port: the input at the next router */
@@ -75,7 +80,8 @@ struct flight {
     int nhop;                     /* R: pass[0 .. nhop] */
     bool optimistic;              /* not simulated */
     sim_ps arrival;               /* when it is delivered, SIM_NEVER: not known */
-    sim_ps foreseen;              /* auto: time of the delivery posted when it was admitted, -1: none */
+    /* auto: time of the delivery posted when it was admitted, -1: none */
+    sim_ps foreseen;
     sim_ps clear;                 /* auto: when its last trace is gone */
     sim_ps port_before;           /* auto: until when the injection port was taken by others */
     struct pass pass[];
@@ -90,19 +96,23 @@ struct packet {
     sim_ps tail;                  /* when its last flit crosses the resource granted last */
     uint32_t position;            /* in its FIFO */
     int32_t flits, index, hop;    /* hop: of the resource granted last */
-    int32_t channel, input;       /* of the FIFO it is in; input: port and channel, for round robin */
+    /* of the FIFO it is in; input: port and channel, for round robin */
+    int32_t channel, input;
 };
 
 struct fabric {
     struct net *net;
     struct resource *resource;    /* (nresource) */
-    sim_action *look;             /* what an event of a resource does: subject the fabric, argument its number */
-    sim_action *occupied;         /* resource `argument` begins to serve others, for debt[argument] */
+    /* what an event of a resource does: subject the fabric, argument its number */
+    sim_action *look;
+    /* resource `argument` begins to serve others, for debt[argument] */
+    sim_action *occupied;
     sim_ps *debt;                 /* (nresource) NULL until used */
     bool cuts;                    /* messages larger than a buffer travel in pieces of its size */
     struct source *source;        /* (nnode) */
     struct hop *way;              /* (max_hops + 2) scratch: the route of the message being made */
-    sim_ps *own_port;             /* (nnode x processors) injection port for the processor's own messages alone */
+    /* (nnode x processors) injection port for the processor's own messages alone */
+    sim_ps *own_port;
     int nprocessor, nchannel, nlane; /* channels per link; channels per class */
     int nclass;
     int buffer;                   /* flits per channel */

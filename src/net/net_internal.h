@@ -1,10 +1,12 @@
-/* net_internal.h - what the levels share: resources, their rates, sizes on the wire, accounts and delivery.
+/* net_internal.h - what the levels share: resources, their rates, sizes on the wire, accounts and
+ * delivery.
  *
- * A message passes resources h = 0 .. R: its node's injection port, its links, the ejection port of the destination;
- * R = links + 1. Its head crosses resource h at x_h, x_0 >= ready and x_{h+1} >= x_h + tau, and its tail is delivered
- * at x_R + tail + end, where tail is the time of all its flits but the first at the slowest rate of the route. With
- * nothing in the way that is ready + R tau + tail + end on every level. Without flits in the spec a flit is a byte.
- * All times are integer picoseconds, converted once by net_create. */
+ * A message passes resources h = 0 .. R: its node's injection port, its links, the ejection port of
+ * the destination; R = links + 1. Its head crosses resource h at x_h, x_0 >= ready and x_{h+1} >=
+ * x_h + tau, and its tail is delivered at x_R + tail + end, where tail is the time of all its flits
+ * but the first at the slowest rate of the route. With nothing in the way that is ready + R tau +
+ * tail + end on every level. Without flits in the spec a flit is a byte. All times are integer
+ * picoseconds, converted once by net_create. */
 #ifndef NET_NET_INTERNAL_H
 #define NET_NET_INTERNAL_H
 
@@ -27,9 +29,13 @@ static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
 }
 
 /* net_rate_slower: the slower of two rates. */
-static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b) { return a.byte >= b.byte ? a : b; }
+static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b)
+{
+    return a.byte >= b.byte ? a : b;
+}
 
-/* What an injection port, and the interfaces at both ends, do with messages of one range of sizes. */
+/* What an injection port, and the interfaces at both ends, do with messages of one range of
+ * sizes. */
 struct net_port {
     int64_t below;       /* the first size of the next range, INT64_MAX: none */
     struct net_rate rate; /* includes the interface's gap per byte */
@@ -47,15 +53,18 @@ struct net {
     void *context, *others_context;
     net_others_fn *others; /* NULL: nobody is asked (net_ask_others) */
     net_early_fn *early;   /* NULL: nobody is told (net_foresee) */
-    sim_ps tau, credit, allocation, setup; /* latencies: hop, credit, channel of a head, route and channel [ps] */
+    /* latencies: hop, credit, channel of a head, route and channel [ps] */
+    sim_ps tau, credit, allocation, setup;
     int64_t flit_bytes;                        /* >= 1 */
     struct net_rate ejection, link;
     struct net_port port[SOFTWARE_MAX_SEGMENTS]; /* (nport) the injection ports by rising size */
     int nport;
-    struct net_rate *link_rate;                /* (nlink), NULL when all links have the rate `link` */
+    /* (nlink), NULL when all links have the rate `link` */
+    struct net_rate *link_rate;
     int nnode, nlink, nresource;
 
-    bool port_private;      /* messages of one node are handed over in the order of their ready times */
+    /* messages of one node are handed over in the order of their ready times */
+    bool port_private;
     int64_t in_flight;      /* messages accepted and not yet delivered */
     struct link_load *load; /* (nresource), NULL unless wanted */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
@@ -75,8 +84,14 @@ void net_link_foresee(struct net *n);
 static inline int net_injection(const struct net *n, int node) { return (void)n, node; }
 static inline int net_resource(const struct net *n, int link) { return n->nnode + link; }
 static inline int net_ejection(const struct net *n, int node) { return n->nnode + n->nlink + node; }
-static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }
-static inline bool net_is_ejection(const struct net *n, int resource) { return resource >= n->nnode + n->nlink; }
+static inline bool net_is_injection(const struct net *n, int resource)
+{
+    return resource < n->nnode;
+}
+static inline bool net_is_ejection(const struct net *n, int resource)
+{
+    return resource >= n->nnode + n->nlink;
+}
 
 /* net_port: how the injection ports serve a message of `bytes` payload. */
 static inline const struct net_port *net_port(const struct net *n, int64_t bytes)
@@ -97,8 +112,8 @@ static inline struct net_rate net_resource_rate(const struct net *n, int resourc
     return n->link_rate ? n->link_rate[resource - n->nnode] : n->link;
 }
 
-/* net_packets: how many packets carry `bytes` of payload (>= 1); net_packet_flits: the flits of packet `index` of
- * them, header included (>= 1); net_flits: the flits of all together. */
+/* net_packets: how many packets carry `bytes` of payload (>= 1); net_packet_flits: the flits of
+ * packet `index` of them, header included (>= 1); net_flits: the flits of all together. */
 int64_t net_packets(const struct net *n, int64_t bytes);
 int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index);
 int64_t net_flits(const struct net *n, int64_t bytes);
@@ -106,17 +121,20 @@ int64_t net_flits(const struct net *n, int64_t bytes);
 /* net_choice: the number that selects among random routes, a hash of the message's id. */
 uint64_t net_choice(const struct net_message *m);
 
-/* net_route: the resources of m's whole way, injection first, ejection last, into route[max_hops + 2] (`link` holds
- * resource numbers); returns R. *slowest becomes the slowest rate of the route. */
-int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest);
+/* net_route: the resources of m's whole way, injection first, ejection last, into route[max_hops +
+ * 2] (`link` holds resource numbers); returns R. *slowest becomes the slowest rate of the route. */
+int net_route(const struct net *n, const struct net_message *m, struct hop *route,
+              struct net_rate *slowest);
 
 /* net_slowest: the slowest rate of m's route, *nhop its number of links. */
 struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop);
 
-/* net_head_port: the input port through which a message that comes over `resource` enters the next router. */
+/* net_head_port: the input port through which a message that comes over `resource` enters the next
+ * router. */
 int net_head_port(const struct net *n, int resource);
 
-/* net_port_busy: how long the `flits` flits of a message of `bytes` take an injection port, the gap g included. */
+/* net_port_busy: how long the `flits` flits of a message of `bytes` take an injection port, the gap
+ * g included. */
 static inline sim_ps net_port_busy(const struct net *n, int64_t bytes, int64_t flits)
 {
     const struct net_port *p = net_port(n, bytes);
@@ -133,8 +151,10 @@ static inline void net_arrive(struct net *n, struct net_message *m)
     n->deliver(n->context, m);
 }
 
-/* net_account: resource was used for `busy` by a message (or a part of it: messages 0) that waited `queue` for it. */
-static inline void net_account(struct net *n, int resource, int messages, int64_t bytes, sim_ps busy, sim_ps queue)
+/* net_account: resource was used for `busy` by a message (or a part of it: messages 0) that waited
+ * `queue` for it. */
+static inline void net_account(struct net *n, int resource, int messages, int64_t bytes,
+                               sim_ps busy, sim_ps queue)
 {
     if (!n->load) return;
     struct link_load *l = &n->load[resource];

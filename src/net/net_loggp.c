@@ -53,7 +53,8 @@ static void loggp_inject(struct net *n, struct net_message *m)
         m->uncontended =
             port_take(&g->own_port[m->src * g->nprocessor + m->processor], m->ready, busy) + flight;
     if (n->path) {
-        const uint32_t sent = net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
+        const uint32_t sent =
+            net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
         m->path = net_path_tail(n, net_path_hops(n, sent, nhop + 1, -1), slow, m->bytes);
     }
     net_account(n, net_injection(n, m->src), 1, m->bytes, busy, m->injected - m->ready);

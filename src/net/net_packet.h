@@ -1,11 +1,13 @@
 /* net_packet.h - virtual cut-through: the functions that the levels `packet` and `auto` share.
  *
- * Packets of at most a buffer's size go from resource to resource (injection port, links, ejection port). Behind each
- * resource but the last lies one FIFO per virtual channel; only its front packet may ask for the next resource. A
- * resource that is granted at t is taken for exactly the packet's length: the credit rule lets a packet go only when
- * it will never stall on the way, so everything about it is known at the grant and one event per resource is enough.
+ * Packets of at most a buffer's size go from resource to resource (injection port, links, ejection
+ * port). Behind each resource but the last lies one FIFO per virtual channel; only its front packet
+ * may ask for the next resource. A resource that is granted at t is taken for exactly the packet's
+ * length: the credit rule lets a packet go only when it will never stall on the way, so everything
+ * about it is known at the grant and one event per resource is enough.
  *
- * Level `auto` adds claims: a message that meets nobody is not simulated but only noted on its resources. */
+ * Level `auto` adds claims: a message that meets nobody is not simulated but only noted on its
+ * resources. */
 #ifndef NET_NET_PACKET_H
 #define NET_NET_PACKET_H
 
@@ -19,8 +21,8 @@
  *   Returns NULL with ERR_CONFIG when flits, channels or buffers of the machine make no sense. */
 struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e);
 
-/* packet_fabric: the same for levels packet and auto, which also need buffers that hold a packet and the credit round
- * trip: otherwise NULL with ERR_CONFIG that names the keys. */
+/* packet_fabric: the same for levels packet and auto, which also need buffers that hold a packet
+ * and the credit round trip: otherwise NULL with ERR_CONFIG that names the keys. */
 struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e);
 
 /* packet_send: net_type.send of levels packet and flit. */
@@ -32,8 +34,9 @@ void packet_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
 /* packet_look: an event of a resource on levels packet and auto. */
 void packet_look(void *subject, uint64_t argument, sim_ps now);
 
-/* Pools: nothing is allocated once a run has reached its widest point. flight_take also finds the route of m and cuts
- * it into packets; fifo_of makes the FIFOs behind r when they are first used. */
+/* Pools: nothing is allocated once a run has reached its widest point. flight_take also finds the
+ * route of m and cuts it into packets; fifo_of makes the FIFOs behind r when they are first
+ * used. */
 struct flight *flight_take(struct fabric *f, struct net_message *m);
 void flight_return(struct fabric *f, struct flight *w);
 struct packet *packet_take(struct fabric *f);
@@ -58,16 +61,19 @@ static inline sim_ps flight_empty(const struct net *n, const struct flight *w)
 /* source_enter: put w among the messages of its node that wait for the injection port. */
 void source_enter(struct fabric *f, struct flight *w);
 
-/* flight_measure: fill in m->uncontended; to be called in the order in which the processor sends. */
+/* flight_measure: fill in m->uncontended; to be called in the order in which the processor
+ * sends. */
 void flight_measure(struct fabric *f, struct flight *w);
 
 /* packet_wake: see that resource r is looked at, at time `at` or earlier. */
 void packet_wake(struct fabric *f, int r, sim_ps at);
 
-/* packet_occupied: event, resource `argument` is taken by others for debt[argument], from when it is free. */
+/* packet_occupied: event, resource `argument` is taken by others for debt[argument], from when it
+ * is free. */
 void packet_occupied(void *subject, uint64_t argument, sim_ps now);
 
-/* packet_ejection_setup: how long an ejection port of one virtual channel is idle between packets. */
+/* packet_ejection_setup: how long an ejection port of one virtual channel is idle between
+ * packets. */
 static inline sim_ps packet_ejection_setup(const struct fabric *f)
 {
     return f->nchannel == 1 ? f->net->allocation : 0;
@@ -76,20 +82,22 @@ static inline sim_ps packet_ejection_setup(const struct fabric *f)
 /* packet_enter: packet p, granted its pass p->hop, stands in the FIFO behind it. */
 void packet_enter(struct fabric *f, struct packet *p);
 
-/* packet_left: a packet of q, `flits` long from `position`, was granted its next resource at `at`; its tail crosses it
- * at `tail`, where a flit takes `flit`. */
-void packet_left(struct fabric *f, struct fifo *q, uint32_t position, int32_t flits, sim_ps at, sim_ps tail,
-                 sim_ps flit);
+/* packet_left: a packet of q, `flits` long from `position`, was granted its next resource at `at`;
+ * its tail crosses it at `tail`, where a flit takes `flit`. */
+void packet_left(struct fabric *f, struct fifo *q, uint32_t position, int32_t flits, sim_ps at,
+                 sim_ps tail, sim_ps flit);
 
 /* packet_deliver_at: w will be delivered at `arrival`. */
 void packet_deliver_at(struct fabric *f, struct flight *w, sim_ps arrival);
 
-/* auto: apply to o's round-robin pointer what claims did before `now`; w was delivered; s leaves its list. */
+/* auto: apply to o's round-robin pointer what claims did before `now`; w was delivered; s leaves
+ * its list. */
 void auto_catch_up(struct fabric *f, struct resource *o, sim_ps now);
 void auto_delivered(struct fabric *f, struct flight *w);
 void pass_unlink(struct fabric *f, struct pass *s);
 
-/* packet_name_cycle: write "A waits for B waits for A" for the `count` resources way[]; returns true. */
+/* packet_name_cycle: write "A waits for B waits for A" for the `count` resources way[]; returns
+ * true. */
 bool packet_name_cycle(const struct net *n, const int *way, int count, char *text, int size);
 
 /* packet_deadlock: net_type.deadlock of both levels. */

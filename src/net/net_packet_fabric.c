@@ -53,8 +53,7 @@ static bool cut_through_config(const struct net *n, struct err *e)
     if (w->buffer_flits < least)
         return err_set(e, ERR_CONFIG,
                        "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + "
-                       "credit_latency = "
-                       "%lld ps in flits of %lld ps)",
+                       "credit_latency = %lld ps in flits of %lld ps)",
                        w->buffer_flits, n->type->name, (long long)least, (long long)trip,
                        (long long)flit);
     /* Without packets a message is cut to a buffer's size (flight_cut). */
@@ -63,10 +62,8 @@ static bool cut_through_config(const struct net *n, struct err *e)
     if (flits > w->buffer_flits)
         return err_set(e, ERR_CONFIG,
                        "network.packet_bytes %lld with network.header_bytes %lld makes packets of "
-                       "%lld flits, but "
-                       "network.buffer_flits is %d; level %s needs whole packets to fit: "
-                       "buffer_flits >= %lld or "
-                       "packet_bytes <= %lld",
+                       "%lld flits, but network.buffer_flits is %d; level %s needs whole packets "
+                       "to fit: buffer_flits >= %lld or packet_bytes <= %lld",
                        (long long)w->packet_bytes, (long long)w->header_bytes, (long long)flits,
                        w->buffer_flits, n->type->name, (long long)flits,
                        (long long)(w->buffer_flits * w->flit_bytes - w->header_bytes));
@@ -206,8 +203,8 @@ static void flight_cut(const struct fabric *f, struct flight *w)
     w->last = (int32_t)last;
 }
 
-/* A link offers the channels of the message's deadlock class; ports offer all of them. No flit takes
- * more than `longest`. */
+/* A link offers the channels of the message's deadlock class; ports offer all of them. No flit
+ * takes more than `longest`. */
 static void pass_init(struct fabric *f, struct flight *w, int h, const struct hop *way,
                       sim_ps longest)
 {

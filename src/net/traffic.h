@@ -1,7 +1,9 @@
-/* traffic.h - lists of messages with dependencies replayed on a level of the network, without processors.
+/* traffic.h - lists of messages with dependencies replayed on a level of the network, without
+ * processors.
  *
- * Message m may start `delay[m]` after the last of its dependencies has arrived, and not before `time[m]`; a node
- * sends its ready messages in the order (ready, m). A list has no cycles if every dependency has a lower number. */
+ * Message m may start `delay[m]` after the last of its dependencies has arrived, and not before
+ * `time[m]`; a node sends its ready messages in the order (ready, m). A list has no cycles if every
+ * dependency has a lower number. */
 #ifndef NET_TRAFFIC_H
 #define NET_TRAFFIC_H
 
@@ -14,7 +16,8 @@ struct traffic {
     int64_t *bytes; /* (nmessage) payload */
     sim_ps *time;   /* (nmessage) earliest start [ps] */
     sim_ps *delay;  /* (nmessage) after the last dependency's arrival [ps] */
-    int *dep_first; /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
+    /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
+    int *dep_first;
     int *dep;       /* numbers of other messages */
 };
 
@@ -27,7 +30,8 @@ struct traffic_result {
     uint64_t digest; /* of the events */
     int nlink;
     const struct link_load *link; /* when asked for, in the arena */
-    bool deadlock;                /* messages are left that nothing can move; text names the cycle */
+    /* messages are left that nothing can move; text names the cycle */
+    bool deadlock;
     char text[512];
 };
 
@@ -36,9 +40,10 @@ struct traffic_result {
  *   a           memory of the net and of the link loads
  *   want_links  record loads
  *
- *   Returns false with ERR_CONFIG when the level cannot run on the machine, ERR_DATA when a message has no such
- *   node, a negative size or a dependency that does not exist. A deadlock is a result, not an error. */
-bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t, struct arena *a,
-                 bool want_links, struct traffic_result *out, struct err *e);
+ *   Returns false with ERR_CONFIG when the level cannot run on the machine, ERR_DATA when a message
+ * has no such node, a negative size or a dependency that does not exist. A deadlock is a result,
+ * not an error. */
+bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t,
+                 struct arena *a, bool want_links, struct traffic_result *out, struct err *e);
 
 #endif

@@ -1,4 +1,5 @@
-/* call.h - what each run of a plan is called: the name that was given, or the machine with what was changed of it. */
+/* call.h - what each run of a plan is called: the name that was given, or the machine with what was
+ * changed of it. */
 #ifndef PLAN_CALL_H
 #define PLAN_CALL_H
 
@@ -18,11 +19,13 @@ struct call_point {
     const struct setting *at; /* (n) */
 };
 
-/* call_run: fill run->called, after machine_changes_note. A given name (run->label) holds for all points of a sweep,
- * so what the sweep changes of the machine is added to it: no two machines share a name.
+/* call_run: fill run->called, after machine_changes_note. A given name (run->label) holds for all
+ * points of a sweep, so what the sweep changes of the machine is added to it: no two machines share
+ * a name.
  *
  *   file   in  the machine as its file has it: what a machine that is not shipped is compared with
- *   point  in  (npoint) the settings of each axis; an axis that gives a name itself has named what it changes */
+ *   point  in  (npoint) the settings of each axis; an axis that gives a name itself has named what
+ * it changes */
 void call_run(struct calls *c, struct run_spec *run, const struct machine_spec *file,
               const struct call_point *point, int npoint);
 

@@ -193,7 +193,8 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
 }
 
 /* Whether the conditions of the scenario and of --only keep this point: 1 yes, 0 no, -1 one makes
- * no sense. All are asked: a mistake in the second is told although the first leaves the point out. */
+ * no sense. All are asked: a mistake in the second is told although the first leaves the point
+ * out. */
 static int wanted(struct expansion *x, const struct run_spec *run)
 {
     const struct scenario *s = x->scenario;
@@ -374,7 +375,8 @@ static bool expand_points(struct expansion *x, int64_t capacity)
     }
     if (p->nrun > 0) return true;
     return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0,
-                      "%s excludes all runs", x->scenario->ncondition > 1 ? "'only' with all its conditions"
+                      "%s excludes all runs", x->scenario->ncondition > 1 ? "'only' with all its "
+                                                                            "conditions"
                       : x->scenario->condition[0].line == 0 ? "--only" : "'only'");
 }
 
@@ -387,12 +389,14 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     int ntable;
     /* Counted before anything is built: a few lines can ask for any number of runs. The count stops
      * growing long before it overflows. */
-    for (int i = 0; i < s->naxis && n < INT64_MAX / SCENARIO_MAX_POINTS; i++) n *= s->axis[i].npoint;
+    for (int i = 0; i < s->naxis && n < INT64_MAX / SCENARIO_MAX_POINTS; i++)
+        n *= s->axis[i].npoint;
     if (n > MAX_RUNS)
         return err_set_at(e, ERR_CONFIG, s->path, 0,
-                          "the sweep has %s%lld runs; expected at most %d: make it smaller, or split "
-                          "it into several scenarios",
-                          n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n, MAX_RUNS);
+                          "the sweep has %s%lld runs; expected at most %d: make it smaller, or "
+                          "split it into several scenarios",
+                          n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n,
+                          MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
     x.identity = identity_create(table, ntable);
     p->memory = TAKE(p->arena, 1, struct plan_memory);
@@ -428,7 +432,8 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
     /* a list of its own, behind which the further settings stand */
     struct setting_list set = {0};
     for (int i = 0; i < s.set.n; i++)
-        if (!setting_list_add(&set, s.set.at[i].key, s.set.at[i].text, s.set.at[i].file, 0, p->arena, e))
+        if (!setting_list_add(&set, s.set.at[i].key, s.set.at[i].text, s.set.at[i].file, 0,
+                              p->arena, e))
             return false;
     for (int i = 0; i < n; i++)
         if (!setting_list_add(&set, key[i], text[i], "optimise", 0, p->arena, e)) return false;

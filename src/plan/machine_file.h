@@ -1,4 +1,5 @@
-/* machine_file.h - a machine from its file and the files it builds on, with where each value came from. */
+/* machine_file.h - a machine from its file and the files it builds on, with where each value came
+ * from. */
 #ifndef PLAN_MACHINE_FILE_H
 #define PLAN_MACHINE_FILE_H
 
@@ -28,12 +29,13 @@ struct machine_file {
     } * published;
 };
 
-/* machine_file_read: machine `name` (see data_dir_find with `near`) complete: bases, defaults, checks.
- * Returns false with ERR_NO_INPUT, ERR_DATA or ERR_CONFIG. */
-bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a, struct err *e);
+/* machine_file_read: machine `name` (see data_dir_find with `near`) complete: bases, defaults,
+ * checks. Returns false with ERR_NO_INPUT, ERR_DATA or ERR_CONFIG. */
+bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a,
+                       struct err *e);
 
-/* machine_file_check: whether the values fit together: dimensions of the family, placement list, rates.
- * Returns false with ERR_CONFIG at `file`:`line`. */
+/* machine_file_check: whether the values fit together: dimensions of the family, placement list,
+ * rates. Returns false with ERR_CONFIG at `file`:`line`. */
 bool machine_file_check(const struct machine_spec *m, const char *file, int line, struct err *e);
 
 #endif

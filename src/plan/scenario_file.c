@@ -230,7 +230,8 @@ static const struct top_key {
     const char *name;
     top_fn *read;
 } top_keys[] = {
-    {"schema_version", read_version}, {"question", read_question}, {"repetitions", read_repetitions},
+    {"schema_version", read_version}, {"question", read_question},
+     {"repetitions", read_repetitions},
     {"figures", read_figures},        {"only", read_only},         {"when", read_only},
     {"sweep", read_sweep},            {"optimise", read_search},
 };
@@ -423,12 +424,15 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     drop_overruled(s, "program.file", "kernel.name");
     if (o->name != NULL) {
         remove_setting(&s->set, "label");
-        if (!setting_list_add(&s->set, "label", arena_text(a, o->name), "--name", 0, a, e)) return false;
+        if (!setting_list_add(&s->set, "label", arena_text(a, o->name), "--name", 0, a, e))
+            return false;
     }
     if (o->only != NULL) {
         if (s->ncondition == SCENARIO_MAX_CONDITIONS)
-            return err_set(e, ERR_USAGE, "--only: the scenario has %d conditions already", s->ncondition);
-        if (!condition_read(&s->condition[s->ncondition++], o->only, "--only", 0, a, e)) return false;
+            return err_set(e, ERR_USAGE, "--only: the scenario has %d conditions already",
+                           s->ncondition);
+        if (!condition_read(&s->condition[s->ncondition++], o->only, "--only", 0, a, e))
+            return false;
     }
     if (o->machine == NULL) return true;
     remove_axis(s, "machine.name");
@@ -466,6 +470,7 @@ bool scenario_file_read(struct scenario *s, const char *name, const struct plan_
     const bool program = program_file_is(name);
     const char *path = program ? name : data_dir_find("scenarios", name, NULL, a, e);
     struct node *root = NULL;
-    if (path != NULL) root = program ? program_file_scenario(name, a, e) : document_read_settings(path, a, e);
+    if (path != NULL)
+        root = program ? program_file_scenario(name, a, e) : document_read_settings(path, a, e);
     return root != NULL && scenario_file_tree(s, root, path, o, a, e);
 }

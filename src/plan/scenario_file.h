@@ -1,5 +1,5 @@
-/* scenario_file.h - a scenario as its file and the command line give it: settings that hold for all runs, axes whose
- * points are combined, and what is left out. Nothing is resolved yet. */
+/* scenario_file.h - a scenario as its file and the command line give it: settings that hold for all
+ * runs, axes whose points are combined, and what is left out. Nothing is resolved yet. */
 #ifndef PLAN_SCENARIO_FILE_H
 #define PLAN_SCENARIO_FILE_H
 
@@ -39,10 +39,10 @@ struct scenario {
     const char **figure;
 };
 
-/* scenario_file_read: scenario `name` (see data_dir_find) with `o`. Returns false with ERR_NO_INPUT, ERR_DATA or
- * ERR_USAGE. */
-bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o, struct arena *a,
-                        struct err *e);
+/* scenario_file_read: scenario `name` (see data_dir_find) with `o`. Returns false with
+ * ERR_NO_INPUT, ERR_DATA or ERR_USAGE. */
+bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o,
+                        struct arena *a, struct err *e);
 
 /* scenario_file_tree: the same from a tree already read, whose keys may be renamed. */
 bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,

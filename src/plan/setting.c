@@ -176,7 +176,8 @@ void setting_apply(const struct setting *s, struct run_spec *run, struct arena *
 /* The distinct names that may follow group `group` ("" or "machine.network"). */
 static int candidates(const char *group, char name[][KEY_LENGTH], const char **list)
 {
-    static const char *const top[] = {"machine", "model", "kernel", "program", "n", "level", "n_over_p"};
+    static const char *const top[] = {"machine", "model", "kernel",  "program",
+                                      "n",       "level", "n_over_p"};
     int n = 0, ntable;
     size_t length = strlen(group);
     const struct field_table *const *tables = field_tables(&ntable);

@@ -1,4 +1,5 @@
-/* program.c - what programs share: outputs, checks, baselines and lists of what is left out (program.h). */
+/* program.c - what programs share: outputs, checks, baselines and lists of what is left out
+ * (program.h). */
 #include "program/program.h"
 
 #include <stdio.h>
@@ -17,7 +18,8 @@ void program_want(struct program_run *r, int output, int64_t n, struct arena *a)
 double *program_output(const struct program_run *r, int output) { return r->output[output].x; }
 
 /* What the order of the run puts back is computed, and so it is not listed. */
-void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why)
+void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what,
+                   const char *why)
 {
     if (l->keep & keep) return;
     CHECK(l->n < RUN_MAX_OMISSIONS);
@@ -28,8 +30,8 @@ void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *
 }
 
 /* Every comparison is kept; the first one that fails says what is wrong with the run. */
-void program_check_add(struct run_result *out, const char *quantity, const char *reference, double relative,
-                       double tolerance)
+void program_check_add(struct run_result *out, const char *quantity, const char *reference,
+                       double relative, double tolerance)
 {
     CHECK(out->nerror < RUN_MAX_ERRORS);
     struct error_check *c = &out->error[out->nerror++];
@@ -39,8 +41,9 @@ void program_check_add(struct run_result *out, const char *quantity, const char 
     c->tolerance = tolerance;
     if (relative <= tolerance) return; /* a NaN does not pass */
     if (out->status == RUN_OK)
-        snprintf(out->text, sizeof out->text, "%s differs from %s by %.3g (relative), more than %.3g", quantity,
-                 reference, relative, tolerance);
+        snprintf(out->text, sizeof out->text,
+                 "%s differs from %s by %.3g (relative), more than %.3g", quantity, reference,
+                 relative, tolerance);
     out->status = RUN_INVALID;
 }
 

@@ -1,15 +1,15 @@
-/* program.h - what any parallel program is: its name, its ranks' text, its outputs, how it is judged and what it costs.
+/* program.h - what any parallel program is: its name, its ranks' text, its outputs, how it is
+ * judged and what it costs.
  *
- * Room run makes runs of programs and knows nothing of what they compute. A program knows its own settings, scenes,
- * outputs and references; it is one `const struct program_type` and a line in a table (kernel/programs.c). Life of a
- * run:
+ * Room run makes runs of programs and knows nothing of what they compute. A program knows its own
+ * settings, scenes, outputs and references; it is one `const struct program_type` and a line in a
+ * table (kernel/programs.c). Life of a run:
  *
- *     open      the scene and the settings are looked at: can the program run them, and with which text?
- *     prepare   room for the outputs, tables that all ranks share
- *     (the ranks run)
- *     judge     what the program saw itself: may the answer be believed?
- *     again     other settings, where the answer asks for them: back to prepare
- *     check     the outputs against independent references; baselines: serial codes for the same task
+ *     open      the scene and the settings are looked at: can the program run them, and with which
+ * text? prepare   room for the outputs, tables that all ranks share (the ranks run) judge     what
+ * the program saw itself: may the answer be believed? again     other settings, where the answer
+ * asks for them: back to prepare check     the outputs against independent references; baselines:
+ * serial codes for the same task
  *
  * `estimate` and `leave_out` need no more than open. */
 #ifndef PROGRAM_PROGRAM_H
@@ -26,7 +26,8 @@
 #include "spec/run_spec.h"
 
 enum { PROGRAM_OUTPUTS = 12 };
-/* What every rank executes. `job` is the program's own, shared by all ranks and read-only to them. */
+/* What every rank executes. `job` is the program's own, shared by all ranks and read-only to
+ * them. */
 struct rank_program {
     int nstage;
     const char *const *stage_name; /* (nstage) */
@@ -37,16 +38,17 @@ struct rank_program {
 
     /* run: the program of one rank. */
     void (*run)(struct comm *c, const void *job, void *workspace);
-    bool timed, no_synchronous, foreign, leftovers; /* as in world_load; false for built-in programs */
+    /* as in world_load; false for built-in programs */
+    bool timed, no_synchronous, foreign, leftovers;
     int64_t stack_bytes;            /* of each rank, 0: as for built-in programs */
 };
 
-/* One run of a program, from open to check. The caller fills the first part, open and prepare the second; after open
- * it stays in place, since the program points into it. */
+/* One run of a program, from open to check. The caller fills the first part, open and prepare the
+ * second; after open it stays in place, since the program points into it. */
 struct program_run {
     const struct program_type *type;
-    struct run_spec spec;        /* the settings in force, a copy: `again` may change those of the program, so it may
-                                    be another run than the one that its config_hash names */
+    struct run_spec spec; /* the settings in force, a copy: `again` may change those of the program,
+                             so it may be another run than the one that its config_hash names */
     struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere */
     const struct hosts *hosts; /* as in run_order, as the next ones */
     int threads, cores, job_run;
@@ -54,9 +56,11 @@ struct program_run {
     struct arena *arena;         /* memory of open: lives as long as this struct */
 
     void *own;                       /* the program's own, made by open in `arena` */
-    const struct rank_program *rank; /* set by open; may be chosen among several, or made in `arena` */
+    /* set by open; may be chosen among several, or made in `arena` */
+    const struct rank_program *rank;
     const void *job;                 /* what the ranks get; set by prepare */
-    int nbody, nu;                   /* bodies and degrees of freedom of the scene; 0: it has none */
+    /* bodies and degrees of freedom of the scene; 0: it has none */
+    int nbody, nu;
     double metre, kilogram, second;  /* its units in SI; 0: it has none */
     struct comm_output output[PROGRAM_OUTPUTS]; /* made by prepare */
     const struct text *said; /* lines of the result, see run_result.said; NULL: none */
@@ -88,61 +92,68 @@ struct program_type {
     bool has_scene;    /* it works on a multibody system: the model's settings act */
     const void *context; /* the program's own constants; NULL: none */
 
-    /* cache_create, cache_destroy: what runs of this program may share (scenes, serial answers); NULL: nothing.
-     * Programs with the same cache_create share one. destroy accepts NULL. */
+    /* cache_create, cache_destroy: what runs of this program may share (scenes, serial answers);
+     * NULL: nothing. Programs with the same cache_create share one. destroy accepts NULL. */
     struct program_cache *(*cache_create)(void);
     void (*cache_destroy)(struct program_cache *cache);
 
-    /* open: look at r->spec and make r->own, rank, nbody, nu and units. False with ERR_CONFIG when this program cannot
-     * run the settings (more ranks than bodies, a scene that it does not do), other kinds when a file is bad. */
+    /* open: look at r->spec and make r->own, rank, nbody, nu and units. False with ERR_CONFIG when
+     * this program cannot run the settings (more ranks than bodies, a scene that it does not do),
+     * other kinds when a file is bad. */
     bool (*open)(struct program_run *r, struct err *e);
-    void (*close)(struct program_run *r); /* gives back what open, even if it failed, took beside arenas; or NULL */
-    /* prepare: outputs, job and shared tables from `scratch`, which lives until the run has been judged or, the last
-     * time, checked; costs no simulated time. */
+    /* gives back what open, even if it failed, took beside arenas; or NULL */
+    void (*close)(struct program_run *r);
+    /* prepare: outputs, job and shared tables from `scratch`, which lives until the run has been
+     * judged or, the last time, checked; costs no simulated time. */
     bool (*prepare)(struct program_run *r, struct arena *scratch, struct err *e);
 
-    /* judge: what the program itself saw of its answer, into `out`; RUN_INVALID when it is not to be trusted. NULL:
-     * nothing. */
+    /* judge: what the program itself saw of its answer, into `out`; RUN_INVALID when it is not to
+     * be trusted. NULL: nothing. */
     void (*judge)(struct program_run *r, struct run_result *out);
 
-    /* again: whether the run is to be made once more, with settings that this call has changed. Called after judge,
-     * not after a deadlock. NULL: never. */
+    /* again: whether the run is to be made once more, with settings that this call has changed.
+     * Called after judge, not after a deadlock. NULL: never. */
     bool (*again)(struct program_run *r, struct run_result *out);
 
-    /* check: outputs against independent references: out->error, RUN_INVALID beyond a tolerance. NULL: no check. */
+    /* check: outputs against independent references: out->error, RUN_INVALID beyond a tolerance.
+     * NULL: no check. */
     void (*check)(struct program_run *r, struct arena *scratch, struct run_result *out);
 
-    /* baselines: predicted times of serial codes for the same task into out->baseline; out->stage is filled. NULL:
-     * there is none. */
+    /* baselines: predicted times of serial codes for the same task into out->baseline; out->stage
+     * is filled. NULL: there is none. */
     void (*baselines)(struct program_run *r, const struct work_price *price, struct arena *scratch,
                       struct run_result *out);
 
     /* estimate: counts by formula, without running; after open. */
     void (*estimate)(const struct program_run *r, struct program_estimate *out);
 
-    /* leave_out: what the program does not compute because its scene does not need it; after open. NULL: nothing. */
+    /* leave_out: what the program does not compute because its scene does not need it; after open.
+     * NULL: nothing. */
     void (*leave_out)(const struct program_run *r, struct left_out *l);
 
-    /* unused: settings that act nowhere because of what the scene is, "key: reason" (constant texts), into out (2);
-     * what the settings alone decide is in the fields' tables. Returns how many. After open. NULL: none. */
+    /* unused: settings that act nowhere because of what the scene is, "key: reason" (constant
+     * texts), into out (2); what the settings alone decide is in the fields' tables. Returns how
+     * many. After open. NULL: none. */
     int (*unused)(const struct program_run *r, const char **out);
 };
 
-/* program_want: output number `output` gathers n numbers, zero before, from `a`. program_output: them, or NULL. */
+/* program_want: output number `output` gathers n numbers, zero before, from `a`. program_output:
+ * them, or NULL. */
 void program_want(struct program_run *r, int output, int64_t n, struct arena *a);
 double *program_output(const struct program_run *r, int output);
 
-/* leave_out_add: one more thing left out, unless `keep` of the run puts it back. bound: largest relative change of a
- * result, 0: exact. Texts are copied. */
-void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why);
+/* leave_out_add: one more thing left out, unless `keep` of the run puts it back. bound: largest
+ * relative change of a result, 0: exact. Texts are copied. */
+void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what,
+                   const char *why);
 
-/* program_check_add: one number that was compared with a reference, into out->error. A relative error above the
- * tolerance, or one that is no number, makes the run RUN_INVALID with its text. */
-void program_check_add(struct run_result *out, const char *quantity, const char *reference, double relative,
-                       double tolerance);
+/* program_check_add: one number that was compared with a reference, into out->error. A relative
+ * error above the tolerance, or one that is no number, makes the run RUN_INVALID with its text. */
+void program_check_add(struct run_result *out, const char *quantity, const char *reference,
+                       double relative, double tolerance);
 
-/* program_baseline_add: one serial code with its predicted time. program_fastest_add: "fastest serial", the fastest of
- * the baselines from number `first` on; nothing when there are none. */
+/* program_baseline_add: one serial code with its predicted time. program_fastest_add: "fastest
+ * serial", the fastest of the baselines from number `first` on; nothing when there are none. */
 void program_baseline_add(struct run_result *out, const struct work_price *price, const char *name,
                           const struct work *w);
 void program_fastest_add(struct run_result *out, int first);

@@ -64,7 +64,8 @@ static bool read_headers(struct claim_rule *r, struct arena *a)
         const char *word, **place;
     /* The order is that of the messages: all are needed, `never` and `explore` are not. */
     } const header[] = {{"statement", &r->statement}, {"test", &r->test},     {"unit", &r->unit},
-                        {"designated", &r->designated}, {"judged", &r->judged}, {"points", &r->points},
+                        {"designated", &r->designated}, {"judged", &r->judged},
+                         {"points", &r->points},
                         {"needs", &r->needs}};
     for (size_t i = 0; i < sizeof header / sizeof *header; i++)
         if (!(*header[i].place = header_line(a, r->sql, header[i].word))) return false;
@@ -276,9 +277,8 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
     const char *const key[] = {rule->id, *variant ? variant : rule->designated};
     struct spread p = {store_int(0), store_null(), store_null(), store_null()};
     if (!store_query(d->s,
-                     "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample"
-                     " WHERE id = ?1 "
-                     "AND variant = ?2",
+                     "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample WHERE "
+                     "id = ?1 AND variant = ?2",
                      2, key, NULL, take_spread, &p, d->e))
         return false;
     const struct store_value value[] = {store_text(rule->id),

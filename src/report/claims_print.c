@@ -12,12 +12,11 @@ static const char order[] = " ORDER BY substr(id, 1, 1) <> 'C', length(id), id, 
 /* One line per claim: value, threshold, range and share over the samples, in how many variants
  * it holds. */
 static const char table_sql[] =
-    "SELECT id, verdict, iif(value IS NULL, '-', format('%.4g', value)) AS value, threshold, unit,"
-    " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high),"
-    " '-') AS range,"
-    " iif(share IS NULL, '-', format('%d %%', round(100 * share))) AS share,"
-    " iif(testable > 0, holding || ' of ' || testable, '-') AS \"holds in\", statement"
-    " FROM claim WHERE variant = '' ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
+    "SELECT id, verdict, iif(value IS NULL, '-', format('%.4g', value)) AS value, threshold, unit, "
+    "iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high), "
+    "'-') AS range, iif(share IS NULL, '-', format('%d %%', round(100 * share))) AS share, "
+    "iif(testable > 0, holding || ' of ' || testable, '-') AS \"holds in\", statement FROM claim "
+    "WHERE variant = '' ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
 
 /* How each verdict came about. */
 static const char reason_sql[] = "SELECT id, verdict, judged, test, note FROM claim"
@@ -58,9 +57,8 @@ static void close_claim(struct listing *l)
 enum claim_column { COLUMN_JUDGED = 2, COLUMN_STATEMENT = 6, COLUMN_TESTABLE = 8, COLUMN_UNIT = 10,
               COLUMN_VARIANT = 14, COLUMN_VERDICT = 15 };
 static const char json_sql[] = "SELECT holding, id, judged, note, samples, share, statement, test,"
-                               " testable, threshold,"
-                               " unit, value, value_high,"
-                               " value_low, variant, verdict FROM claim";
+                               " testable, threshold, unit, value, value_high, value_low, variant, "
+                               "verdict FROM claim";
 
 /* A row with an empty variant begins a claim; those that follow are in its list `variants`. Keys
  * are sorted, so a claim stays open until its last variant and its verdict, the last key. */

@@ -68,7 +68,8 @@ static bool take_key(void *context, int ncolumn, const char *const *name, const 
 }
 
 /* How many runs a side has, and on how many machines. */
-static bool take_count(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool take_count(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
 {
     struct compare_side *s = context;
     (void)ncolumn, (void)name;
@@ -89,10 +90,10 @@ static bool read_settings(struct reading *r, struct err *e)
                           " WHERE run_id IN (SELECT value FROM json_each(?1))",
                           1, ids, take_count, s, e) ||
             !store_select(s->store,
-                          "SELECT s.key, count(DISTINCT s.id), min(s.value) FROM run_setting x"
-                          " JOIN setting s ON s.id = x.setting_id WHERE x.run_id IN"
-                          " (SELECT run_id FROM v_run WHERE run_id IN (SELECT value FROM json_each(?1)))"
-                          " GROUP BY s.key ORDER BY s.key",
+                          "SELECT s.key, count(DISTINCT s.id), min(s.value) FROM run_setting x "
+                          "JOIN setting s ON s.id = x.setting_id WHERE x.run_id IN (SELECT run_id "
+                          "FROM v_run WHERE run_id IN (SELECT value FROM json_each(?1))) GROUP BY "
+                          "s.key ORDER BY s.key",
                           1, ids, take_key, r, e))
             return false;
         if (s->nrun == 0)
@@ -117,11 +118,13 @@ static void choose_point_keys(struct reading *r)
             const struct key *k = &r->key[i];
             const bool size = strcmp(k->name, "model.n") == 0 || strcmp(k->name, "ranks") == 0 ||
                               strcmp(k->name, "program.n") == 0;
-            /* A setting that is unknown on a side (an older database) cannot tell its points apart. */
+            /* A setting that is unknown on a side (an older database) cannot tell its points
+             * apart. */
             bool everywhere = true;
             for (int s = 0; s < r->c->nside; s++) everywhere = everywhere && k->there[s];
             if (k->varies && everywhere && !is_machine(k->name) && size == (pass == 0) &&
-                strcmp(k->name, "seed") != 0 && strcmp(k->name, "scenario") != 0 && strncmp(k->name, "record.", 7) != 0)
+                strcmp(k->name, "seed") != 0 && strcmp(k->name, "scenario") != 0 &&
+                strncmp(k->name, "record.", 7) != 0)
                 r->point_key[r->npoint_key++] = k;
         }
 }
@@ -134,7 +137,8 @@ static void list_differences(struct reading *r)
     c->difference = TAKE(c->arena, r->nkey + 1, struct compare_difference);
     for (int i = 0; i < r->nkey; i++) {
         const struct key *k = &r->key[i];
-        /* A key that a side does not have (an older database) is a difference, too, shown as "-". */
+        /* A key that a side does not have (an older database) is a difference, too, shown as
+         * "-". */
         bool same = true, known = true;
         for (int s = 0; s < c->nside; s++) {
             known = known && (k->value[s] != NULL || !k->there[s]);
@@ -203,8 +207,8 @@ static bool take_run(void *context, int ncolumn, const char *const *name,
     cell->makespan += (time - before) / cell->runs;
     cell->half += (time - before) * (time - cell->makespan);
     for (int i = 0; i < COMPARE_PARTS; i++)
-        cell->part[i] += ((v[3 + i].kind == STORE_REAL ? v[3 + i].real : 0) * time - cell->part[i]) /
-                         cell->runs;
+        cell->part[i] +=
+            ((v[3 + i].kind == STORE_REAL ? v[3 + i].real : 0) * time - cell->part[i]) / cell->runs;
     return true;
 }
 
@@ -235,13 +239,14 @@ static bool read_runs(struct reading *r, struct err *e)
     text_add(&sql, " FROM v_run v");
     /* Keys are bound: they are texts of a database. */
     for (int i = 0; i < r->npoint_key; i++)
-        text_add(&sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i, i, i,
-                 i + 2);
+        text_add(&sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i, i,
+                 i, i + 2);
     text_add(&sql, " WHERE v.run_id IN (SELECT value FROM json_each(?1)) ORDER BY v.run_id");
     for (r->side = 0; r->side < c->nside && ok; r->side++) {
         const char *param[MOST_POINT_KEYS + 1] = {c->side[r->side].run_ids};
         for (int i = 0; i < r->npoint_key; i++) param[i + 1] = r->point_key[i]->name;
-        ok = store_query(c->side[r->side].store, sql.s, r->npoint_key + 1, param, NULL, take_run, r, e);
+        ok = store_query(c->side[r->side].store, sql.s, r->npoint_key + 1, param, NULL, take_run, r,
+                         e);
     }
     text_free(&sql);
     return ok;
@@ -293,8 +298,9 @@ bool compare_make(struct compare *c, int n, const struct compare_side *side, str
     finish_cells(c);
     order_points(c);
     if (c->ncommon == 0)
-        return err_set(e, ERR_NO_INPUT, "no two runs of all sides agree in what they were asked: nothing can be "
-                                        "compared point by point");
+        return err_set(e, ERR_NO_INPUT,
+                       "no two runs of all sides agree in what they were asked: nothing can be "
+                       "compared point by point");
     /* With ranks = n there are two keys, but one number says both. */
     bool apart = false;
     for (int i = 0; i < c->npoint; i++) apart = apart || strstr(c->point[i].name, "ranks ") != NULL;
@@ -334,15 +340,17 @@ static bool put_points(const struct compare *c, struct store *s, struct err *e)
     /* The curves above show every point; bars need room. */
     const int most = MOST_BARS / c->nside, shown = c->ncommon < most ? c->ncommon : most;
     bool ok = store_temporary(s, "compare_point",
-                              "place INTEGER, point TEXT, x REAL, side INTEGER, name TEXT, makespan_s REAL,"
-                              " half_s REAL, compute_s REAL, overhead_s REAL, wait_s REAL,"
+                              "place INTEGER, point TEXT, x REAL, side INTEGER, name TEXT, "
+                              "makespan_s REAL, half_s REAL, compute_s REAL, overhead_s REAL, "
+                              "wait_s REAL,"
                               " contention_s REAL, ratio REAL, bar INTEGER", e);
     for (int i = 0; ok && i < c->ncommon; i++) {
         const struct compare_point *p = &c->point[i];
         /* First and last are always among them, the others at equal distances. */
         int place = 0; /* of its bars: number `place` of those that are shown */
         for (int k = 0; k < shown; k++)
-            if ((shown > 1 ? (int)((int64_t)k * (c->ncommon - 1) / (shown - 1)) : 0) == i) place = k + 1;
+            if ((shown > 1 ? (int)((int64_t)k * (c->ncommon - 1) / (shown - 1)) : 0) == i)
+                place = k + 1;
         for (int k = 0; ok && k < c->nside; k++) {
             double error;
             const struct compare_cell *cell = &p->cell[k];
@@ -358,14 +366,16 @@ static bool put_points(const struct compare *c, struct store *s, struct err *e)
     return ok;
 }
 
-/* The tables are temporary ones of the first side's connection, wherever the other sides came from. */
+/* The tables are temporary ones of the first side's connection, wherever the other sides came
+ * from. */
 bool compare_draw(const struct compare *c, const char *data_dir, const char *dir, const char *as,
                   struct err *e)
 {
     struct store *s = c->side[0].store;
     struct text title = {0};
     const int most = MOST_BARS / c->nside;
-    for (int i = 0; i < c->nside; i++) text_add(&title, "%s%s", i > 0 ? " and " : "", c->side[i].name);
+    for (int i = 0; i < c->nside; i++)
+        text_add(&title, "%s%s", i > 0 ? " and " : "", c->side[i].name);
     /* Two points make no curve, and points that differ in words have no axis. */
     const bool lines = c->x_only && c->ncommon > 2;
     /* What the script has to know stands in one row, as for mimdsim plot. */
@@ -373,12 +383,14 @@ bool compare_draw(const struct compare *c, const char *data_dir, const char *dir
         store_text(title.s), store_int(c->nside), store_int(c->ncommon < most ? c->ncommon : most),
         store_int(c->ncommon), store_int(lines), store_text(c->x_name),
         store_int(lines && c->point[0].x > 0 && c->point[c->ncommon - 1].x >= 16 * c->point[0].x)};
-    bool ok = put_points(c, s, e) &&
-              store_temporary(s, "compare_about",
-                              "title TEXT, sides INTEGER, shown INTEGER, points INTEGER, lines INTEGER,"
-                              " xlabel TEXT, xlog INTEGER", e) &&
-              store_temporary_row(s, "compare_about", (int)(sizeof about / sizeof *about), about, e) &&
-              report_figure_run(s, data_dir, "_compare", 0, as, dir, e);
+    bool ok =
+        put_points(c, s, e) &&
+        store_temporary(s, "compare_about",
+                        "title TEXT, sides INTEGER, shown INTEGER, points INTEGER, lines INTEGER, "
+                        "xlabel TEXT, xlog INTEGER",
+                        e) &&
+        store_temporary_row(s, "compare_about", (int)(sizeof about / sizeof *about), about, e) &&
+        report_figure_run(s, data_dir, "_compare", 0, as, dir, e);
     text_free(&title);
     return ok;
 }

@@ -1,4 +1,5 @@
-/* compare.h - sets of stored runs held against each other: settings, results, where the time goes. */
+/* compare.h - sets of stored runs held against each other: settings, results, where the time
+ * goes. */
 #ifndef REPORT_COMPARE_H
 #define REPORT_COMPARE_H
 
@@ -30,7 +31,8 @@ struct compare_cell {
     int64_t run;       /* the first of them */
     double makespan;   /* mean [s] */
     double half;       /* of the 95 % confidence interval [s], 0: one run */
-    double part[COMPARE_PARTS]; /* computing, overhead, waiting, contention [s], mean over the ranks */
+    /* computing, overhead, waiting, contention [s], mean over the ranks */
+    double part[COMPARE_PARTS];
 };
 
 /* Runs of several sides that agree in everything but what the sides differ in. */
@@ -52,23 +54,26 @@ struct compare {
 
 extern const char *const compare_part[COMPARE_PARTS]; /* what the parts are called */
 
-/* compare_make: pair the runs of `n` sides (2 .. MOST_SIDES). Settings of the machine make no point: a machine is what
- * is compared; where a side has several, its name does. Returns false with ERR_NO_INPUT (a side without runs, or no
- * point that two sides have), or as store_query. compare_free ends it either way. */
+/* compare_make: pair the runs of `n` sides (2 .. MOST_SIDES). Settings of the machine make no
+ * point: a machine is what is compared; where a side has several, its name does. Returns false with
+ * ERR_NO_INPUT (a side without runs, or no point that two sides have), or as store_query.
+ * compare_free ends it either way. */
 bool compare_make(struct compare *c, int n, const struct compare_side *side, struct err *e);
 
 /* compare_free: accepts what compare_make left. */
 void compare_free(struct compare *c);
 
-/* compare_ratio: time of side `side` over that of the first at a point; *error gets the relative half width of its
- * 95 % confidence interval, 0: both are single runs. NAN when one is missing. */
+/* compare_ratio: time of side `side` over that of the first at a point; *error gets the relative
+ * half width of its 95 % confidence interval, 0: both are single runs. NAN when one is missing. */
 double compare_ratio(const struct compare_point *p, int side, double *error);
 
-/* compare_print: differences, results with ratios, where the time goes at the largest common point; as text or as one
- * JSON document with sorted keys. */
+/* compare_print: differences, results with ratios, where the time goes at the largest common point;
+ * as text or as one JSON document with sorted keys. */
 void compare_print(const struct compare *c, bool json, FILE *out);
 
-/* compare_draw: all sides in one figure, `as` its files in folder `dir`. Returns false as report_figure. */
-bool compare_draw(const struct compare *c, const char *data_dir, const char *dir, const char *as, struct err *e);
+/* compare_draw: all sides in one figure, `as` its files in folder `dir`. Returns false as
+ * report_figure. */
+bool compare_draw(const struct compare *c, const char *data_dir, const char *dir, const char *as,
+                  struct err *e);
 
 #endif

@@ -114,10 +114,13 @@ static void print_results(const struct compare *c, FILE *out)
         }
         fprintf(out, "\n");
     }
-    if (c->ncommon > LONGEST_LIST) fprintf(out, "and %d points more: --json has all\n", c->ncommon - LONGEST_LIST);
-    fprintf(out, spread ? "+-: half of the 95 %% confidence interval, from repetitions\n"
-                        : "Single runs: simulated times have no spread; how far the model is off, `mimdsim "
-                          "accuracy` and `validate` tell.\n");
+    if (c->ncommon > LONGEST_LIST)
+        fprintf(out, "and %d points more: --json has all\n", c->ncommon - LONGEST_LIST);
+    fprintf(out,
+            spread
+                ? "+-: half of the 95 %% confidence interval, from repetitions\n"
+                : "Single runs: simulated times have no spread; how far the model is off, `mimdsim "
+                  "accuracy` and `validate` tell.\n");
     if (c->npoint > c->ncommon)
         fprintf(out, "Left out: %d points that not all sides have.\n", c->npoint - c->ncommon);
 }
@@ -128,8 +131,8 @@ static void print_parts(const struct compare *c, FILE *out)
     /* One point is enough to see the reason; the figure has all of them. */
     const struct compare_point *p = &c->point[c->ncommon - 1];
     char cell[48];
-    fprintf(out, "\nWhere the time goes%s%s (mean over the ranks):\n%-24s", p->name[0] != '\0' ? " at " : "",
-            p->name, "");
+    fprintf(out, "\nWhere the time goes%s%s (mean over the ranks):\n%-24s",
+            p->name[0] != '\0' ? " at " : "", p->name, "");
     for (int s = 0; s < c->nside; s++) fprintf(out, " %20c", 'A' + s);
     fprintf(out, "\n");
     for (int k = 0; k < COMPARE_PARTS; k++) {

@@ -37,19 +37,17 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name,
 
 /* The sentences of a claim are one paragraph; its map is only asked for. */
 static const char sentences[] =
-    "SELECT a.subject, group_concat(a.sentence, ' '),"
-    " (SELECT statement FROM claim WHERE id = a.subject AND variant = ''),"
-    " (SELECT 1 FROM explain_map m WHERE m.subject = a.subject LIMIT 1)"
+    "SELECT a.subject, group_concat(a.sentence, ' '), (SELECT statement FROM claim WHERE id = "
+    "a.subject AND variant = ''), (SELECT 1 FROM explain_map m WHERE m.subject = a.subject LIMIT 1)"
     " FROM (SELECT * FROM explain_answer" IN_ORDER ") a GROUP BY a.subject"
     " ORDER BY a.subject = 'together', length(a.subject), a.subject";
 
 /* The same answers as a table: exp(distance) is the product of all factors, that is how large
  * the change is as a single one. */
 static const char table_sql[] =
-    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict,"
-    " variant,"
-    " iif(distance IS NULL, '', format('%.3g', exp(distance))) AS factor, settings, points,"
-    " CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM "
+    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict, "
+    "variant, iif(distance IS NULL, '', format('%.3g', exp(distance))) AS factor, settings, "
+    "points, CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM "
     "explain_answer" IN_ORDER;
 
 /* A database without a search has no such section. */

@@ -18,7 +18,8 @@ struct machines {
 };
 
 /* name, runs: the machines with most runs first. */
-static bool add_machine(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool add_machine(void *context, int ncolumn, const char *const *name,
+                        const char *const *value)
 {
     struct machines *m = context;
     (void)ncolumn, (void)name;
@@ -45,11 +46,10 @@ bool figure_rows(struct store *s, const char *run_ids, struct text *out, struct 
 {
     /* Shown machines are named where one of them is not as shipped, or others are left out. */
     static const char left[] =
-        "SELECT l.name, count(*) FROM run r JOIN v_label l ON l.run_id = r.id"
-        " WHERE r.status = 'ok' AND r.kernel IN (SELECT kernel FROM run WHERE id IN"
-        " (SELECT value FROM json_each(?1))) AND r.machine_key NOT IN (SELECT machine_key FROM run"
-        " WHERE id IN (SELECT value FROM json_each(?1)))"
-        " GROUP BY l.name ORDER BY count(*) DESC, l.name",
+        "SELECT l.name, count(*) FROM run r JOIN v_label l ON l.run_id = r.id WHERE r.status = "
+        "'ok' AND r.kernel IN (SELECT kernel FROM run WHERE id IN (SELECT value FROM "
+        "json_each(?1))) AND r.machine_key NOT IN (SELECT machine_key FROM run WHERE id IN (SELECT "
+        "value FROM json_each(?1))) GROUP BY l.name ORDER BY count(*) DESC, l.name",
                       shown[] =
         "SELECT l.name, count(*) FROM v_label l WHERE l.run_id IN (SELECT value FROM json_each(?1))"
         " GROUP BY l.name ORDER BY count(*) DESC, l.name",

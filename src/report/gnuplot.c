@@ -116,11 +116,11 @@ bool gnuplot_run(const char *dir, const char *file, struct err *e)
     /* A signal counts as a failure, too. */
     bool ok = ended && WIFEXITED(status) && WEXITSTATUS(status) == 0;
     if (!ended)
-        err_set(e, ERR_UNAVAILABLE, "%s had not drawn %s/%s after %g s and was ended", program(), dir, file,
-                seconds_allowed());
+        err_set(e, ERR_UNAVAILABLE, "%s had not drawn %s/%s after %g s and was ended", program(),
+                dir, file, seconds_allowed());
     else if (WIFSIGNALED(status))
-        err_set(e, ERR_UNAVAILABLE, "%s was ended by signal %d (%s) before it had drawn %s/%s", program(),
-                WTERMSIG(status), strsignal(WTERMSIG(status)), dir, file);
+        err_set(e, ERR_UNAVAILABLE, "%s was ended by signal %d (%s) before it had drawn %s/%s",
+                program(), WTERMSIG(status), strsignal(WTERMSIG(status)), dir, file);
     else if (!ok)
         err_set(e, ERR_UNAVAILABLE, "%s could not draw %s/%s: %s", program(), dir, file,
                 reason(&complaints));

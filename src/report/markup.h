@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* markup_escape_bytes: `n` bytes of text for HTML or XML, also inside attributes. Characters of markup
- * become entities; control characters, which XML forbids, become blanks. */
+/* markup_escape_bytes: `n` bytes of text for HTML or XML, also inside attributes. Characters of
+ * markup become entities; control characters, which XML forbids, become blanks. */
 void markup_escape_bytes(FILE *out, const char *s, size_t n);
 
 /* markup_escape: the same of a whole text. */

@@ -109,8 +109,9 @@ void page_contents(struct page *p)
 }
 
 /* One of the two files: what came before the list of contents, the list, and the rest. */
-static bool write_file(const char *folder, const char *name, const char *ending, const struct text *body,
-                       size_t list_at, const struct text *list, struct err *e)
+static bool write_file(const char *folder, const char *name, const char *ending,
+                       const struct text *body, size_t list_at, const struct text *list,
+                       struct err *e)
 {
     struct text path = {0}, all = {0};
     text_add(&path, "%s/%s.%s", folder, name, ending);
@@ -134,9 +135,12 @@ bool page_close(struct page *p, const char *folder, const char *name, bool keep,
     }
     const bool whole = p->trouble.kind == ERR_NONE;
     if (keep && !whole) *e = p->trouble;
-    const bool ok = !keep || (whole && write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
-                              write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
-    struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html, &p->script};
+    const bool ok =
+        !keep ||
+        (whole && write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
+         write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
+    struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html,
+                                 &p->script};
     for (int i = 0; i < 5; i++) text_free(mine[i]);
     *p = (struct page){0};
     return ok;

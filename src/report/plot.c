@@ -131,7 +131,8 @@ static bool is_power_of_two(double v)
     return v > 0 && frexp(v, &exponent) == 0.5;
 }
 
-/* Logarithmic by default where the range asks for it; to base 2 where all values are powers of it. */
+/* Logarithmic by default where the range asks for it; to base 2 where all values are powers of
+ * it. */
 static int log_base(enum plot_scale wanted, double least, double largest, bool powers)
 {
     if (wanted == PLOT_SCALE_LINEAR || least <= 0) return 0;
@@ -161,7 +162,8 @@ static void make_axis(struct axis *axis, const struct plot_column *c, enum plot_
     const double factor = scaled && largest > 0 ? prefix_of(c->unit, largest, &name) : 1;
     axis->scale = 1 / factor;
     axis->base = c->number ? log_base(wanted, least, largest, powers) : 0;
-    if (c->unit == UNIT_TIME) snprintf(axis->label, sizeof axis->label, "%.150s [%s]", c->title, name);
+    if (c->unit == UNIT_TIME)
+        snprintf(axis->label, sizeof axis->label, "%.150s [%s]", c->title, name);
     else if (*si != '\0')
         snprintf(axis->label, sizeof axis->label, "%.150s [%s%s]", c->title, name, per);
     else text_copy(axis->label, sizeof axis->label, c->title);
@@ -246,7 +248,8 @@ static void make_subtitle(const struct plot *p, struct text *t)
 static void say_bands(const struct plot_points *q, struct text *t)
 {
     if (q->repeated > 0)
-        text_add(t, "%sbands: 95 %% confidence of the mean of repetitions", t->length > 0 ? "; " : "");
+        text_add(t, "%sbands: 95 %% confidence of the mean of repetitions",
+                 t->length > 0 ? "; " : "");
     if (q->mixed > 0)
         text_add(t, "%spoints: mean and range of runs that differ in %s", t->length > 0 ? "; " : "",
                  q->differ.s != NULL ? q->differ.s : "nothing that is stored");
@@ -331,11 +334,15 @@ static bool put_about(const struct plot *p, struct store *s, struct err *e)
     text_add(&bands, "%s", "");
     say_bands(q, &bands);
     const struct store_value v[] = {
-        store_text(title.s), store_text(subtitle.s), store_text(bands.s), store_text(p->x.label),
-        store_text(p->y.label), store_text(p->value.label), store_real(p->x.scale),
-        store_real(p->value.scale), store_int(p->x.base), store_int(p->value.base),
-        store_int(q->npanel), store_int(q->nseries), store_int(q->nx), store_int(q->ny),
-        store_int(q->band), store_int(p->sheet.column[p->axes.x].number), store_int((int64_t)longest)};
+        store_text(title.s),        store_text(subtitle.s),
+        store_text(bands.s),        store_text(p->x.label),
+        store_text(p->y.label),     store_text(p->value.label),
+        store_real(p->x.scale),     store_real(p->value.scale),
+        store_int(p->x.base),       store_int(p->value.base),
+        store_int(q->npanel),       store_int(q->nseries),
+        store_int(q->nx),           store_int(q->ny),
+        store_int(q->band),         store_int(p->sheet.column[p->axes.x].number),
+        store_int((int64_t)longest)};
     bool ok = store_temporary(s, "plot_about",
                               "title TEXT, subtitle TEXT, bands TEXT, xlabel TEXT, ylabel TEXT,"
                               " vlabel TEXT, xscale REAL, vscale REAL, xlog INTEGER, vlog INTEGER,"
@@ -383,10 +390,12 @@ static bool read_rows(struct plot *p, struct store *s, struct err *e)
 static bool check_request(const struct plot_request *r, struct err *e)
 {
     if (r->query == NULL && (r->x == NULL || r->y == NULL))
-        return err_set(e, ERR_USAGE, "--%s is missing: which column to draw, such as --x n --y speedup",
+        return err_set(e, ERR_USAGE,
+                       "--%s is missing: which column to draw, such as --x n --y speedup",
                        r->x == NULL ? "x" : "y");
     if (r->query == NULL && r->kind == PLOT_HEAT && r->z == NULL)
-        return err_set(e, ERR_USAGE, "--z is missing: a heat map shows a third column over --x and --y");
+        return err_set(e, ERR_USAGE,
+                       "--z is missing: a heat map shows a third column over --x and --y");
     if (r->z != NULL && r->kind != PLOT_HEAT && r->kind != PLOT_AUTO)
         return err_set(e, ERR_USAGE, "--z belongs to a heat map alone");
     return true;
@@ -466,8 +475,8 @@ bool plot_columns(struct store *s, FILE *out, struct err *e)
 {
     return store_query(s, "SELECT * FROM v_run LIMIT 0", 0, NULL, print_column, no_row, out, e) &&
            store_select(s,
-                        "SELECT key, max(unit), iif(count(DISTINCT id) > 1,"
-                        " count(DISTINCT id) || ' values', max(value)) FROM setting"
-                        " WHERE id IN (SELECT setting_id FROM run_setting) GROUP BY key ORDER BY key",
+                        "SELECT key, max(unit), iif(count(DISTINCT id) > 1, count(DISTINCT id) || "
+                        "' values', max(value)) FROM setting WHERE id IN (SELECT setting_id FROM "
+                        "run_setting) GROUP BY key ORDER BY key",
                         0, NULL, print_setting, out, e);
 }

@@ -65,7 +65,8 @@ static int list_places(const struct making *m, int column, int *place)
         for (int j = 0; j < n && !known; j++) known = same_place(m, column, place[j], row);
         if (known) continue;
         /* Words compare equal: they keep the order in which they came. */
-        for (; k > 0 && compare_cells(m, column, place[k - 1], row) > 0; k--) place[k] = place[k - 1];
+        for (; k > 0 && compare_cells(m, column, place[k - 1], row) > 0; k--)
+            place[k] = place[k - 1];
         place[k] = row;
         n++;
     }
@@ -89,7 +90,8 @@ static bool has_place(const struct making *m, int row)
     return a->y < 0 || text_at(m, row, a->y)[0] != '\0';
 }
 
-/* Each row gets its numbers on the axes; the lists of places are made from the rows that have one. */
+/* Each row gets its numbers on the axes; the lists of places are made from the rows that have
+ * one. */
 static void place_rows(struct making *m)
 {
     struct plot_points *p = m->p;
@@ -205,8 +207,10 @@ static bool too_many(const struct making *m, int n, struct err *e)
     for (int i = 0; i < m->axes->nby; i++)
         text_add(&t, "%s%s (%d values)", i > 0 ? ", " : "", m->sheet->column[m->axes->by[i]].title,
                  values_of(m, m->axes->by[i]));
-    err_set(e, ERR_USAGE, "%d curves are more than can be told apart; they differ in %s: choose with --by or "
-                          "--where", n, t.s != NULL ? t.s : "nothing");
+    err_set(e, ERR_USAGE,
+            "%d curves are more than can be told apart; they differ in %s: choose with --by or "
+            "--where",
+            n, t.s != NULL ? t.s : "nothing");
     text_free(&t);
     return false;
 }
@@ -327,8 +331,8 @@ static const struct plot_point *point_at(const struct plot_points *p, int panel,
     return NULL;
 }
 
-/* The largest relative difference of two curves where both have points; 1 when one has a point where
- * the other has none. */
+/* The largest relative difference of two curves where both have points; 1 when one has a point
+ * where the other has none. */
 static double distance(const struct plot_points *p, int a, int b)
 {
     double largest = 0;

@@ -1,4 +1,5 @@
-/* plot_points.h - rows of a plot as points of curves: which rows make one point, how far they spread. */
+/* plot_points.h - rows of a plot as points of curves: which rows make one point, how far they
+ * spread. */
 #ifndef REPORT_PLOT_POINTS_H
 #define REPORT_PLOT_POINTS_H
 
@@ -32,9 +33,11 @@ struct plot_points {
     int unknown;                /* rows without a value or a place on the axes */
 };
 
-/* plot_points_make: the points of the sheet's rows. Of several rows in one place the mean; repetitions of one run with
- * the 95 % confidence interval of the mean (Student's t), others with the range. *axes gets the columns that were
- * added. Returns false with ERR_NO_INPUT (nothing to draw) or ERR_USAGE (more curves than can be told apart). */
-bool plot_points_make(struct plot_points *p, const struct plot_sheet *sheet, struct plot_axes *axes, struct err *e);
+/* plot_points_make: the points of the sheet's rows. Of several rows in one place the mean;
+ * repetitions of one run with the 95 % confidence interval of the mean (Student's t), others with
+ * the range. *axes gets the columns that were added. Returns false with ERR_NO_INPUT (nothing to
+ * draw) or ERR_USAGE (more curves than can be told apart). */
+bool plot_points_make(struct plot_points *p, const struct plot_sheet *sheet, struct plot_axes *axes,
+                      struct err *e);
 
 #endif

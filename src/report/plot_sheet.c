@@ -118,9 +118,8 @@ static bool list_names(struct names *n, struct store *s, struct err *e)
     n->nview = n->ncolumn;
     return store_query(s, "SELECT * FROM run LIMIT 0", 0, NULL, add_columns, no_row, n, e) &&
            store_select(s,
-                        "SELECT key, count(DISTINCT id) > 1 FROM setting"
-                        " WHERE id IN (SELECT setting_id FROM run_setting) GROUP BY key"
-                        " ORDER BY 2 DESC, key",
+                        "SELECT key, count(DISTINCT id) > 1 FROM setting WHERE id IN (SELECT "
+                        "setting_id FROM run_setting) GROUP BY key ORDER BY 2 DESC, key",
                         0, NULL, add_setting, n, e);
 }
 
@@ -151,7 +150,8 @@ static bool unknown(const struct names *n, const char *key, struct err *e)
                    near != NULL ? "'?" : "");
 }
 
-/* Where the values of `key` are: a column by its name, a setting by its key or a unique end of it. */
+/* Where the values of `key` are: a column by its name, a setting by its key or a unique end of
+ * it. */
 static bool resolve(const struct names *n, const char *key, struct source *out, struct err *e)
 {
     const char *word = looked_up(alias, sizeof alias / sizeof *alias, key), *found = NULL;
@@ -196,7 +196,8 @@ static int choose(const struct names *n, int nkey, const char *const *key, struc
         count = add_source(list, count, one);
     }
     /* Behind what was asked for: all in which runs may differ, so that nothing is mixed unseen. */
-    for (int i = 0; i < TRAITS; i++) count = add_source(list, count, (struct source){.name = traits[i]});
+    for (int i = 0; i < TRAITS; i++)
+        count = add_source(list, count, (struct source){.name = traits[i]});
     /* Runs with one configuration are repetitions of each other. */
     count = add_source(list, count, (struct source){.name = "config_hash"});
     for (int i = 0; i < n->nvaried; i++) {
@@ -227,8 +228,8 @@ static void write_query(const struct source *list, int n, struct text *sql)
     text_add(sql, " FROM v_run v JOIN run r ON r.id = v.run_id");
     for (int i = 0; i < n; i++)
         if (list[i].setting)
-            text_add(sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i, i,
-                     i, ++param);
+            text_add(sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i,
+                     i, i, ++param);
     text_add(sql, " ORDER BY v.run_id");
 }
 

@@ -1,4 +1,5 @@
-/* plot_sheet.h - the rows that a plot is made of, in memory: stored runs with their settings, or a user's own query. */
+/* plot_sheet.h - the rows that a plot is made of, in memory: stored runs with their settings, or a
+ * user's own query. */
 #ifndef REPORT_PLOT_SHEET_H
 #define REPORT_PLOT_SHEET_H
 
@@ -6,7 +7,8 @@
 #include "base/units.h"
 #include "store/store.h"
 
-/* One value: a text always, a number where it is one (SI base units where the column is a quantity). */
+/* One value: a text always, a number where it is one (SI base units where the column is a
+ * quantity). */
 struct plot_cell {
     const char *text; /* "" for NULL */
     double number;    /* NAN: none */
@@ -29,16 +31,19 @@ struct plot_sheet {
     int64_t *run_id;            /* (nrow) 0: not known */
 };
 
-/* plot_sheet_runs: every run that ended well, with the columns that `key` (n) names and with those that runs may
- * differ in. A key is a column of table run or view v_run, a setting, or the end of one that is unique.
- * Returns false with ERR_USAGE (an unknown key, with the nearest one), or as store_query; nothing is then to be
- * freed. */
-bool plot_sheet_runs(struct plot_sheet *sheet, struct store *s, int n, const char *const *key, struct err *e);
+/* plot_sheet_runs: every run that ended well, with the columns that `key` (n) names and with those
+ * that runs may differ in. A key is a column of table run or view v_run, a setting, or the end of
+ * one that is unique. Returns false with ERR_USAGE (an unknown key, with the nearest one), or as
+ * store_query; nothing is then to be freed. */
+bool plot_sheet_runs(struct plot_sheet *sheet, struct store *s, int n, const char *const *key,
+                     struct err *e);
 
-/* plot_sheet_query: the rows of the query `sql`, which may only read. Returns false as store_query. */
+/* plot_sheet_query: the rows of the query `sql`, which may only read. Returns false as
+ * store_query. */
 bool plot_sheet_query(struct plot_sheet *sheet, struct store *s, const char *sql, struct err *e);
 
-/* plot_sheet_find: the column that `key` names, after plot_sheet_runs or of a query; -1 with ERR_USAGE. */
+/* plot_sheet_find: the column that `key` names, after plot_sheet_runs or of a query; -1 with
+ * ERR_USAGE. */
 int plot_sheet_find(const struct plot_sheet *sheet, const char *key, struct err *e);
 
 /* plot_sheet_at: the value of a row in a column. */

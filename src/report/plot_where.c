@@ -47,8 +47,8 @@ bool plot_where_parse(struct plot_condition *c, const char *text, struct arena *
         break;
     }
     return err_set(e, ERR_USAGE,
-                   "--where '%.80s': expected KEY=VALUE (or !=, <, <=, >, >=, ~), such as level=link "
-                   "or \"hop_latency<1 us\"",
+                   "--where '%.80s': expected KEY=VALUE (or !=, <, <=, >, >=, ~), such as "
+                   "level=link or \"hop_latency<1 us\"",
                    text);
 }
 
@@ -118,8 +118,8 @@ static bool nothing_left(const struct plot_sheet *sheet, int at, const struct pl
         text_add(&values, "%s%.60s", n > 0 ? "; " : "", value[0] != '\0' ? value : "(none)");
         told[n++] = value;
     }
-    err_set(e, ERR_NO_INPUT, "no row fulfils the condition on %s (%.60s); its values are: %s%s", c->key,
-            c->value, values.s != NULL ? values.s : "none", n == MOST_TOLD ? "; ..." : "");
+    err_set(e, ERR_NO_INPUT, "no row fulfils the condition on %s (%.60s); its values are: %s%s",
+            c->key, c->value, values.s != NULL ? values.s : "none", n == MOST_TOLD ? "; ..." : "");
     text_free(&values);
     return false;
 }
@@ -139,7 +139,8 @@ static bool keep(struct plot_sheet *sheet, const struct plot_condition *c, struc
         return err_set(e, ERR_USAGE, "--where %s: '%.60s': %s", c->key, c->value, why);
     /* Counted before anything moves: the message of an empty choice needs all rows. */
     int n = 0;
-    for (int i = 0; i < sheet->nrow; i++) n += fulfils(plot_sheet_at(sheet, i, at), column, c, number);
+    for (int i = 0; i < sheet->nrow; i++)
+        n += fulfils(plot_sheet_at(sheet, i, at), column, c, number);
     if (n == 0) return nothing_left(sheet, at, c, e);
     const size_t width = (size_t)sheet->ncolumn;
     n = 0;

@@ -6,7 +6,15 @@
 
 enum { MOST_CONDITIONS = 32 };
 
-enum plot_operator { PLOT_EQUAL, PLOT_NOT_EQUAL, PLOT_LESS, PLOT_AT_MOST, PLOT_MORE, PLOT_AT_LEAST, PLOT_LIKE };
+enum plot_operator {
+    PLOT_EQUAL,
+    PLOT_NOT_EQUAL,
+    PLOT_LESS,
+    PLOT_AT_MOST,
+    PLOT_MORE,
+    PLOT_AT_LEAST,
+    PLOT_LIKE
+};
 
 /* One condition, as written; it is no SQL and never becomes a part of any. */
 struct plot_condition {
@@ -19,9 +27,11 @@ struct plot_condition {
  * Returns false with ERR_USAGE. */
 bool plot_where_parse(struct plot_condition *c, const char *text, struct arena *a, struct err *e);
 
-/* plot_where_keep: drop the rows of the sheet that do not fulfil all (n) conditions. Numbers are compared as numbers,
- * with units where the column has one; a row without a value fulfils only !=.
- * Returns false with ERR_USAGE (unknown key, wrong unit) or ERR_NO_INPUT (no row is left: which values there are). */
-bool plot_where_keep(struct plot_sheet *sheet, int n, const struct plot_condition *c, struct err *e);
+/* plot_where_keep: drop the rows of the sheet that do not fulfil all (n) conditions. Numbers are
+ * compared as numbers, with units where the column has one; a row without a value fulfils only !=.
+ * Returns false with ERR_USAGE (unknown key, wrong unit) or ERR_NO_INPUT (no row is left: which
+ * values there are). */
+bool plot_where_keep(struct plot_sheet *sheet, int n, const struct plot_condition *c,
+                     struct err *e);
 
 #endif

@@ -73,11 +73,10 @@ static bool contradictions(struct chapter *c)
                    "verdict. \"Judged\" gives the reason for that variant, and the tolerance.");
     return store_select(
         c->d->store,
-        "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
-        " NULL),"
-        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))), judged FROM claim"
-        " WHERE variant = '' AND "
+        "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note, "
+        "iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), "
+        "NULL), iif(share IS NULL, NULL, format('%d %%', round(100 * share))), judged FROM claim "
+        "WHERE variant = '' AND "
         "verdict = 'fail'" IN_ORDER,
         0, NULL, tell_claim, c, c->e);
 }
@@ -110,12 +109,10 @@ static bool claims(struct chapter *c)
                    "value over many points may therefore lie outside its range.");
     return table(
         c,
-        "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold,"
-        " unit,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
-        " '') AS range,"
-        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share,"
-        " iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, test"
+        "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, "
+        "unit, iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, "
+        "value_high), '') AS range, iif(share IS NULL, '', format('%d %%', round(100 * share))) AS "
+        "share, iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, test"
         " FROM claim WHERE variant = ''" IN_ORDER,
         "No claim has been judged.");
 }
@@ -138,11 +135,10 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name,
     return page_table(
         c->page, c->d->store,
         /* A variant's note is its own: which runs it lacks, or what its value is made of. */
-        "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
-        " '') AS range,"
-        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
-        " WHERE id = ?1 AND variant <> '' ORDER BY variant",
+        "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, "
+        "iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), "
+        "'') AS range, iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note "
+        "FROM claim WHERE id = ?1 AND variant <> '' ORDER BY variant",
         1, value, "No run is stored for this claim.", c->e);
 }
 
@@ -238,12 +234,10 @@ static bool numerics(struct chapter *c)
             c,
             /* The largest error beside the largest tolerance: a failed check shows in the last
              * column. */
-            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs,"
-            " max(n) AS largest_n,"
-            " format('%.1e', max(relative_error)) AS largest_error,"
-            " format('%.1e', max(tolerance)) AS "
-            "largest_tolerance,"
-            " count(*) - sum(passed) AS failed FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
+            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, "
+            "max(n) AS largest_n, format('%.1e', max(relative_error)) AS largest_error, "
+            "format('%.1e', max(tolerance)) AS largest_tolerance, count(*) - sum(passed) AS failed "
+            "FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
             "No run is stored."))
         return false;
     page_paragraph(c->page,
@@ -264,31 +258,23 @@ static bool left_out_of_runs(struct chapter *c)
 {
     return table(c,
                  /* A line per kind, with how many runs it concerns. */
-                 "SELECT 'failed runs' AS what, count(*) AS runs,"
-                 " ifnull(group_concat(DISTINCT status), "
-                 "'') AS which"
-                 "  FROM run WHERE status <> 'ok'"
-                 " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
-                 "  iif(count(*) = 0, '', format('n from %d to %d', min(n), max(n))) FROM run r"
-                 "  WHERE status = 'ok' AND kernel = 'dynamics'"
-                 "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id"
-                 " AND b.name LIKE '%crba')"
-                 " UNION ALL SELECT 'contention, level ' || level, count(*),"
-                 " group_concat(DISTINCT scenario) FROM run"
-                 "  WHERE level = 'loggp' GROUP BY level"
-                 " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' ||"
-                 " level, count(*),"
-                 "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
-                 " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not"
-                 " stored', count(*), "
-                 "'' FROM run WHERE links = 0",
+                 "SELECT 'failed runs' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT "
+                 "status), '') AS which  FROM run WHERE status <> 'ok' UNION ALL SELECT 'serial "
+                 "composite-body code: O(n^3), not run', count(*),  iif(count(*) = 0, '', "
+                 "format('n from %d to %d', min(n), max(n))) FROM run r  WHERE status = 'ok' AND "
+                 "kernel = 'dynamics'  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = "
+                 "r.id AND b.name LIKE '%crba') UNION ALL SELECT 'contention, level ' || level, "
+                 "count(*), group_concat(DISTINCT scenario) FROM run  WHERE level = 'loggp' GROUP "
+                 "BY level UNION ALL SELECT 'packets and flits: messages hold whole links, level ' "
+                 "|| level, count(*),  group_concat(DISTINCT scenario) FROM run WHERE level = "
+                 "'link' GROUP BY level UNION ALL SELECT 'single links and routes of the "
+                 "machine''s own traffic are not stored', count(*), '' FROM run WHERE links = 0",
                  "Nothing.") &&
            table(c,
                  /* The program's own omissions, each with its reason. */
-                 "SELECT what, why, class || iif(max(bound) IS NULL, '',"
-                 " format(' %.0e', max(bound))) AS class,"
-                 " count(*) AS runs FROM run_omission GROUP BY what, why, class"
-                 " ORDER BY runs DESC, what",
+                 "SELECT what, why, class || iif(max(bound) IS NULL, '', format(' %.0e', "
+                 "max(bound))) AS class, count(*) AS runs FROM run_omission GROUP BY what, why, "
+                 "class ORDER BY runs DESC, what",
                  "No run has omissions.");
 }
 
@@ -319,15 +305,13 @@ static bool effort(struct chapter *c)
         c,
         /* Host times of all scenarios, of all together, and of the samples, whose runs are not
          * stored. */
-        "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
-        " format('%.2f', sum(host_s)) AS simulating_s,"
-        " format('%.2f', sum(host_total_s)) AS in_all_s,"
-        " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
-        " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
-        " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run"
-        " UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM claim_sample),"
-        " NULL, NULL,"
-        " NULL, value, NULL FROM meta WHERE key = 'samples_s'",
+        "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events, "
+        "format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS "
+        "in_all_s, format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY "
+        "scenario UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', "
+        "sum(host_s)), format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / "
+        "1e6) FROM run UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM "
+        "claim_sample), NULL, NULL, NULL, value, NULL FROM meta WHERE key = 'samples_s'",
         "No run is stored.");
 }
 

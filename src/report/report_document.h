@@ -1,4 +1,5 @@
-/* report_document.h - a report as NAME.md and NAME.html, on the paper or on the contents of a database. */
+/* report_document.h - a report as NAME.md and NAME.html, on the paper or on the contents of a
+ * database. */
 #ifndef REPORT_DOCUMENT_H
 #define REPORT_DOCUMENT_H
 
@@ -15,7 +16,8 @@ struct document_parameter {
 struct document {
     struct store *store;
     const char *name, *title;
-    bool whole;           /* every chapter, telling what is missing; otherwise those that the database has rows for */
+    /* every chapter, telling what is missing; otherwise those that the database has rows for */
+    bool whole;
     const char *data_dir; /* holds plots/ */
     const char *figures;  /* folder of the pictures; the report is written beside it */
     int nfigure;
@@ -25,9 +27,10 @@ struct document {
     double host_s; /* how long the command took; 0: not told */
 };
 
-/* document_write: on claims the abstract, contents, claims that fail, the table of claims; the figures, error against
- * run time, stability, the machines, accuracy, what was left out, time and provenance; a glossary where there are
- * claims. Returns false with ERR_NO_INPUT, ERR_CREATE, ERR_IO or ERR_DATA. */
+/* document_write: on claims the abstract, contents, claims that fail, the table of claims; the
+ * figures, error against run time, stability, the machines, accuracy, what was left out, time and
+ * provenance; a glossary where there are claims. Returns false with ERR_NO_INPUT, ERR_CREATE,
+ * ERR_IO or ERR_DATA. */
 bool document_write(const struct document *d, struct err *e);
 
 #endif

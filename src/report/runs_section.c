@@ -14,18 +14,14 @@ struct section {
 /* A line for each machine and level; a changed machine says how it differs from the shipped one.
  * Runs that failed are counted here, as no figure shows them. */
 static const char machines_of[] =
-    "SELECT l.name AS machine, ifnull(nullif(r.machine_changes, '{}'), '') AS changes, r.level,"
-    " count(*) AS runs, sum(r.status <> 'ok') AS failed,"
-    " iif(min(r.n) = max(r.n), format('%d', min(r.n)), format('%d to %d', min(r.n), max(r.n)))"
-    " AS n,"
-    " iif(min(r.P) = max(r.P), format('%d', min(r.P)), format('%d to %d', min(r.P), max(r.P)))"
-    " AS P,"
-    " format('%.4g', min(iif(r.status = 'ok', ifnull(r.measured_s * 1e6, r.makespan_ps / 1e6),"
-    " NULL))) AS \"shortest [us]\","
-    " format('%.4g', max(iif(r.status = 'ok', ifnull(r.measured_s * 1e6, r.makespan_ps / 1e6),"
-    " NULL))) AS \"longest [us]\""
-    " FROM run r JOIN v_label l ON l.run_id = r.id WHERE r.kernel = ?1"
-    " GROUP BY l.name, r.level ORDER BY r.machine, min(r.id)";
+    "SELECT l.name AS machine, ifnull(nullif(r.machine_changes, '{}'), '') AS changes, r.level, "
+    "count(*) AS runs, sum(r.status <> 'ok') AS failed, iif(min(r.n) = max(r.n), format('%d', "
+    "min(r.n)), format('%d to %d', min(r.n), max(r.n))) AS n, iif(min(r.P) = max(r.P), "
+    "format('%d', min(r.P)), format('%d to %d', min(r.P), max(r.P))) AS P, format('%.4g', "
+    "min(iif(r.status = 'ok', ifnull(r.measured_s * 1e6, r.makespan_ps / 1e6), NULL))) AS "
+    "\"shortest [us]\", format('%.4g', max(iif(r.status = 'ok', ifnull(r.measured_s * 1e6, "
+    "r.makespan_ps / 1e6), NULL))) AS \"longest [us]\" FROM run r JOIN v_label l ON l.run_id = "
+    "r.id WHERE r.kernel = ?1 GROUP BY l.name, r.level ORDER BY r.machine, min(r.id)";
 
 static bool tell_kernel(void *context, int ncolumn, const char *const *name,
                         const char *const *value)

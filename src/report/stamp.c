@@ -37,8 +37,10 @@ static void add_error(struct text *t, const char *what, const char *value, int k
     if (known > 0 && known < all) text_add(t, " (%d of %d runs)", known, all);
 }
 
-/* runs, level error and how many know it, machine's low, high and how many, arithmetic's and how many */
-static bool add_errors(void *context, int ncolumn, const char *const *name, const char *const *value)
+/* runs, level error and how many know it, machine's low, high and how many, arithmetic's and how
+ * many */
+static bool add_errors(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
 {
     struct text *t = context;
     double x[8];
@@ -104,9 +106,8 @@ bool stamp_make(struct store *s, const char *run_ids, struct text *out, struct e
                            "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1",
                            1, ids, add_source, &sources, e) &&
               store_select(s,
-                           "SELECT config_hash FROM run"
-                           " WHERE id IN (SELECT value FROM json_each(?1)) "
-                           "ORDER BY config_hash, seed, rep",
+                           "SELECT config_hash FROM run WHERE id IN (SELECT value FROM "
+                           "json_each(?1)) ORDER BY config_hash, seed, rep",
                            1, ids, add_hash, &hashes, e);
     if (ok) known_errors(s, run_ids, out);
     /* One run is named by its own hash, several by a hash of all their hashes. */

@@ -1,4 +1,5 @@
-/* timeline.h - the spans that one trace shows, picked and put in order; what the formats of trace.h share. */
+/* timeline.h - the spans that one trace shows, picked and put in order; what the formats of trace.h
+ * share. */
 #ifndef REPORT_TIMELINE_H
 #define REPORT_TIMELINE_H
 
@@ -20,11 +21,12 @@ const char *timeline_kind(enum span_kind kind);
 /* timeline_stage: the name of a stage of the run. */
 const char *timeline_stage(const struct timeline *t, int stage);
 
-/* timeline_group: one past the last of the spans from `first` on that follow each other in one stage of one rank. */
+/* timeline_group: one past the last of the spans from `first` on that follow each other in one
+ * stage of one rank. */
 int64_t timeline_group(const struct timeline *t, int64_t first);
 
-/* timeline_partners: for each span of kind send or receive with a message number the index of the other end, -1
- * without one; (nspan) from the heap, owned by the caller. */
+/* timeline_partners: for each span of kind send or receive with a message number the index of the
+ * other end, -1 without one; (nspan) from the heap, owned by the caller. */
 int64_t *timeline_partners(const struct timeline *t);
 
 /* The formats. */

@@ -135,8 +135,9 @@ static bool put_spans(struct store *s, const struct grid *g, struct err *e)
     for (int64_t i = 0; ok && i < v->run->nspan; i++) {
         const struct span *p = &v->run->span[i];
         if (!shown(v, p)) continue;
-        ok = put_bar(s, g, row_of(g, p->rank), p->begin_ps > v->begin_ps ? p->begin_ps : v->begin_ps,
-                     p->end_ps < v->end_ps ? p->end_ps : v->end_ps, p->kind, e);
+        ok =
+            put_bar(s, g, row_of(g, p->rank), p->begin_ps > v->begin_ps ? p->begin_ps : v->begin_ps,
+                    p->end_ps < v->end_ps ? p->end_ps : v->end_ps, p->kind, e);
     }
     return ok;
 }
@@ -207,8 +208,9 @@ static bool put_messages(struct store *s, const struct grid *g, struct err *e)
     for (int64_t i = 0; ok && n <= MESSAGES && i < t.nspan; i++) {
         if (t.span[i]->kind != SPAN_SEND || partner[i] < 0) continue;
         const struct span *to = t.span[partner[i]];
-        const struct store_value v[] = {in_us(t.span[i]->end_ps), store_int(row_of(g, t.span[i]->rank)),
-                                        in_us(to->begin_ps), store_int(row_of(g, to->rank))};
+        const struct store_value v[] = {in_us(t.span[i]->end_ps),
+                                        store_int(row_of(g, t.span[i]->rank)), in_us(to->begin_ps),
+                                        store_int(row_of(g, to->rank))};
         ok = store_temporary_row(s, "timeline_message", 4, v, e);
     }
     free(partner);
@@ -236,20 +238,23 @@ static bool put_about(struct store *s, const struct grid *g, struct err *e)
 static bool make_tables(struct store *s, struct err *e)
 {
     return store_temporary(s, "timeline_bar",
-                           "y INTEGER, rank INTEGER, begin_us REAL, end_us REAL, kind INTEGER,"
-                           " run_id INTEGER", e) &&
-           store_temporary(s, "timeline_share",
-                           "begin_us REAL, end_us REAL, stage INTEGER, compute REAL, send REAL,"
-                           " recv REAL, wait REAL, barrier REAL", e) &&
-           store_temporary(s, "timeline_path", "from_us REAL, from_y INTEGER, to_us REAL, to_y INTEGER",
+                           "y INTEGER, rank INTEGER, begin_us REAL, end_us REAL, kind INTEGER, "
+                           "run_id INTEGER",
                            e) &&
+           store_temporary(s, "timeline_share",
+                           "begin_us REAL, end_us REAL, stage INTEGER, compute REAL, send REAL, "
+                           "recv REAL, wait REAL, barrier REAL",
+                           e) &&
+           store_temporary(s, "timeline_path",
+                           "from_us REAL, from_y INTEGER, to_us REAL, to_y INTEGER", e) &&
            store_temporary(s, "timeline_message",
                            "sent_us REAL, from_y INTEGER, received_us REAL, to_y INTEGER", e) &&
            store_temporary(s, "timeline_stage", "stage INTEGER, name TEXT", e) &&
            store_temporary(s, "timeline_about",
-                           "title TEXT, rows INTEGER, first_rank INTEGER, last_rank INTEGER,"
-                           " begin_us REAL, end_us REAL, makespan_us REAL, single INTEGER,"
-                           " path INTEGER", e);
+                           "title TEXT, rows INTEGER, first_rank INTEGER, last_rank INTEGER, "
+                           "begin_us REAL, end_us REAL, makespan_us REAL, single INTEGER, path "
+                           "INTEGER",
+                           e);
 }
 
 bool timeline_picture(struct store *s, const char *data_dir, const struct timeline_view *v,

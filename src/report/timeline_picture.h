@@ -13,12 +13,12 @@ struct timeline_view {
     int64_t begin_ps, end_ps;     /* window, begin < end */
 };
 
-/* timeline_picture: draw it as AS.png and AS.svg into folder `dir`, as report_figure does. A row is a
- * rank, with all its spans and messages, as long as there is room; else a group of neighbouring
+/* timeline_picture: draw it as AS.png and AS.svg into folder `dir`, as report_figure does. A row is
+ * a rank, with all its spans and messages, as long as there is room; else a group of neighbouring
  * ranks, of which each piece of time shows what they do most. Below it, how many ranks do what at
  * each time; over it, the critical path.
  * Returns false as report_figure. */
-bool timeline_picture(struct store *s, const char *data_dir, const struct timeline_view *v, const char *as,
-                      const char *dir, struct err *e);
+bool timeline_picture(struct store *s, const char *data_dir, const struct timeline_view *v,
+                      const char *as, const char *dir, struct err *e);
 
 #endif

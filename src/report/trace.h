@@ -1,8 +1,8 @@
 /* trace.h - the recorded timeline of one run as a file that opens elsewhere.
  *
- * Each rank is one track whose slices are the recorded spans inside the slice of their stage; a message is an arrow
- * from its send to its receive. Viewers fail near a million events, so there is a limit on the spans written, and
- * what was left out is told. */
+ * Each rank is one track whose slices are the recorded spans inside the slice of their stage; a
+ * message is an arrow from its send to its receive. Viewers fail near a million events, so there is
+ * a limit on the spans written, and what was left out is told. */
 #ifndef REPORT_TRACE_H
 #define REPORT_TRACE_H
 
@@ -20,7 +20,8 @@ enum trace_format {
     TRACE_PAJE,   /* Paje: ViTE, pj_dump */
     TRACE_CSV,    /* one row per span, RFC 4180 */
     TRACE_TEXT,   /* bars of letters for a terminal */
-    TRACE_GOAL    /* a schedule that repeats the run: all of it, whatever the options; left_out: barriers */
+    TRACE_GOAL    /* a schedule that repeats the run: all of it, whatever the options; left_out:
+                     barriers */
 };
 
 enum { TRACE_MAX_SPANS = 200000, TRACE_COLUMNS = 100, TRACE_TEXT_RANKS = 64 };
@@ -39,17 +40,20 @@ bool trace_format_find(const char *name, enum trace_format *format);
 
 /* trace_write: the spans of `r` to `out`.
  *
- *   left_out  out  spans inside window and ranks that the limit left out, the latest ones; for people, the caller says
- *                  so and names the option that raises the limit. Of TRACE_GOAL: barriers of the machine, which are
- *                  written as computing times. TRACE_TEXT shows at most TRACE_TEXT_RANKS ranks.
+ *   left_out  out  spans inside window and ranks that the limit left out, the latest ones; for
+ * people, the caller says so and names the option that raises the limit. Of TRACE_GOAL: barriers of
+ * the machine, which are written as computing times. TRACE_TEXT shows at most TRACE_TEXT_RANKS
+ * ranks.
  *
- *   Returns false with ERR_NO_INPUT when the run has no recorded spans, ERR_CONFIG when none lies in the window,
- *   ERR_IO when writing fails. */
-bool trace_write(const struct run_result *r, enum trace_format format, const struct trace_options *o, FILE *out,
-                 int64_t *left_out, struct err *e);
+ *   Returns false with ERR_NO_INPUT when the run has no recorded spans, ERR_CONFIG when none lies
+ * in the window, ERR_IO when writing fails. */
+bool trace_write(const struct run_result *r, enum trace_format format,
+                 const struct trace_options *o, FILE *out, int64_t *left_out, struct err *e);
 
-/* trace_read: the timeline of a stored run back into *r (only ranks, stages, spans and makespan), in memory of `a`.
- * Returns false with ERR_NO_INPUT when there is no such run or it has no stored spans. */
-bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r, struct err *e);
+/* trace_read: the timeline of a stored run back into *r (only ranks, stages, spans and makespan),
+ * in memory of `a`. Returns false with ERR_NO_INPUT when there is no such run or it has no stored
+ * spans. */
+bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r,
+                struct err *e);
 
 #endif

@@ -79,8 +79,8 @@ static bool read_span(void *context, int ncolumn, const char *const *name,
     if (rank < 0 || rank >= g->r->nrank || begin < 0 || end < begin || end > PS_LAST || kind < 0 ||
         g->r->nspan == g->room)
         return err_set(g->err, ERR_DATA,
-                       "table span, span %lld of the run: rank %lld, kind '%.20s', %lld to %lld ps; "
-                       "expected a rank below %d, a known kind, times that do not fall",
+                       "table span, span %lld of the run: rank %lld, kind '%.20s', %lld to %lld "
+                       "ps; expected a rank below %d, a known kind, times that do not fall",
                        (long long)g->r->nspan, (long long)rank,
                        value[2].text != NULL ? value[2].text : "NULL", (long long)begin,
                        (long long)end, g->r->nrank);
@@ -115,9 +115,8 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
     if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL,
                      read_stage, &g, e) ||
         !store_query(s,
-                     "SELECT rank, stage, kind, begin_ps, end_ps, peer, bytes, message FROM span"
-                     " WHERE run_id = ?1 "
-                     "ORDER BY span",
+                     "SELECT rank, stage, kind, begin_ps, end_ps, peer, bytes, message FROM span "
+                     "WHERE run_id = ?1 ORDER BY span",
                      1, param, NULL, read_span, &g, e))
         return false;
     if (e->kind != ERR_NONE) return false;

@@ -1,7 +1,9 @@
-/* campaign.c - many runs on worker processes, results handed over in plan order by the one parent. A run that is
- * refused, or whose worker dies, is a result, too: failed, with the reason; the others go on.
+/* campaign.c - many runs on worker processes, results handed over in plan order by the one parent.
+ * A run that is refused, or whose worker dies, is a result, too: failed, with the reason; the
+ * others go on.
  *
- * Each worker reads run numbers from its pipe and answers with the result's bytes; the parent alone sees the store. */
+ * Each worker reads run numbers from its pipe and answers with the result's bytes; the parent alone
+ * sees the store. */
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
@@ -23,7 +25,8 @@
 #include "run/interrupt.h"
 #include "run/run.h"
 
-/* Poll this often [us], so that the progress of long runs moves although no run ends; and to ask a dealer. */
+/* Poll this often [us], so that the progress of long runs moves although no run ends; and to ask a
+ * dealer. */
 enum { MOST_WORKERS = 256, HEARTBEAT_US = 200000, LEAST_PAUSE_US = 100, MOST_PAUSE_US = 5000 };
 
 /* A pipe takes and gives what it can: both go on until all is through. False: the other end is
@@ -108,12 +111,15 @@ struct campaign {
     void *context;
     struct progress progress;
     char detail[96]; /* of the progress line */
-    struct run_heartbeat *heartbeat; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
+    /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
+    struct run_heartbeat *heartbeat;
 };
 
-static const double LONG_RUN_S = 0.9; /* [s] of the host; shorter runs show in the number of those done */
+/* [s] of the host; shorter runs show in the number of those done */
+static const double LONG_RUN_S = 0.9;
 
-/* Show the progress, with how far the long runs of busy workers are (worker 0 is this process when there are none). */
+/* Show the progress, with how far the long runs of busy workers are (worker 0 is this process when
+ * there are none). */
 static void show_progress(void *context)
 {
     struct campaign *c = context;
@@ -131,8 +137,9 @@ static void show_progress(void *context)
         ended += atomic_load_explicit(&p->ended, memory_order_relaxed);
         nrank += atomic_load_explicit(&p->nrank, memory_order_relaxed);
     }
-    snprintf(c->detail, sizeof c->detail, "%.3g million events, %.2g million/s, %d of %d ranks ended",
-             1e-6 * events, 1e-6 * rate, ended, nrank);
+    snprintf(c->detail, sizeof c->detail,
+             "%.3g million events, %.2g million/s, %d of %d ranks ended", 1e-6 * events,
+             1e-6 * rate, ended, nrank);
     c->progress.detail = events > 0 ? c->detail : NULL;
     progress_show(&c->progress, c->ndone);
 }
@@ -153,8 +160,8 @@ static struct run_order own_order(const struct run_order *order, int index, int 
 static _Noreturn void worker_main(const struct campaign *c, int at, int orders, int answers)
 {
     int index;
-    /* A parent that is killed takes its workers along: nobody would read their answers, and code of people may be in an
-     * endless loop. */
+    /* A parent that is killed takes its workers along: nobody would read their answers, and code of
+     * people may be in an endless loop. */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != c->parent) _exit(0); /* it went before that was set */
     interrupts_silent();
@@ -182,7 +189,8 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
     struct crash_record *crash = c->worker[at].crash ? c->worker[at].crash : crash_record_create();
     c->worker[at].crash = crash;
     if (crash) crash_record_clear(crash);
-    if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
+    if (pipe(orders) != 0 || pipe(answers) != 0)
+        return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
     c->parent = getpid();
     pid_t pid = fork();
     if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
@@ -206,7 +214,8 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
     return true;
 }
 
-/* Hand run `index` to a worker, -1: none. When it is dead by now, that shows when its answer is read. */
+/* Hand run `index` to a worker, -1: none. When it is dead by now, that shows when its answer is
+ * read. */
 static void give_run(struct worker *w, int index)
 {
     w->busy = index;
@@ -223,9 +232,14 @@ static void give_order(struct campaign *c, struct worker *w)
 
 struct run_result run_refused(const struct err *why)
 {
-    struct run_result r = {.status = RUN_FAILED, .residual = NAN, .measured_s = NAN, .residual_before = NAN,
-                           .loop_rank = -1, .refusal = why->kind};
-    if (why->line > 0) snprintf(r.text, sizeof r.text, "%s:%d: %s", why->file, why->line, why->text);
+    struct run_result r = {.status = RUN_FAILED,
+                           .residual = NAN,
+                           .measured_s = NAN,
+                           .residual_before = NAN,
+                           .loop_rank = -1,
+                           .refusal = why->kind};
+    if (why->line > 0)
+        snprintf(r.text, sizeof r.text, "%s:%d: %s", why->file, why->line, why->text);
     else snprintf(r.text, sizeof r.text, "%s%s%s", why->file, why->file[0] ? ": " : "", why->text);
     return r;
 }
@@ -243,7 +257,8 @@ static bool hand_refused(struct campaign *c, int index, const struct err *why)
 static bool hand_one(struct campaign *c, int i)
 {
     struct answer *a = c->slot[i];
-    const bool ok = a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
+    const bool ok =
+        a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
     arena_destroy(c->arena[i]);
     c->arena[i] = NULL;
     c->slot[i] = NULL;
@@ -285,8 +300,9 @@ static int end_worker(struct worker *w)
     return status;
 }
 
-/* The run of a worker that died has failed; another worker takes its place for those that are left. A crash that the
- * worker has described was the run's own end, anything else is a run that could not be made. */
+/* The run of a worker that died has failed; another worker takes its place for those that are left.
+ * A crash that the worker has described was the run's own end, anything else is a run that could
+ * not be made. */
 static bool replace_worker(struct campaign *c, struct worker *w, struct answer *a, struct err *e)
 {
     kill(w->pid, SIGKILL); /* it may only have answered wrongly */
@@ -297,17 +313,21 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct answer *
         a->result = run_refused(&a->error);
         a->result.nrank = c->spec[a->index].nrank;
     } else if (WIFSIGNALED(status))
-        err_set(&a->error, ERR_INTERNAL, "its worker process was killed by signal %d (%s)", WTERMSIG(status),
-                strsignal(WTERMSIG(status)));
+        err_set(&a->error, ERR_INTERNAL, "its worker process was killed by signal %d (%s)",
+                WTERMSIG(status), strsignal(WTERMSIG(status)));
     else
-        err_set(&a->error, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
-                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused more memory"
-                : WEXITSTATUS(status) == err_exit_status(ERR_IO)     ? ": its answer could not be written"
-                                                                     : "");
+        err_set(&a->error, ERR_INTERNAL, "its worker process ended with status %d%s",
+                WEXITSTATUS(status),
+                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL)
+                    ? ": the system refused more memory"
+                : WEXITSTATUS(status) == err_exit_status(ERR_IO)
+                    ? ": its answer could not be written"
+                    : "");
     return start_worker(c, (int)(w - c->worker), e);
 }
 
-/* The answer of a worker that has one, or its death, into the slot of its run. The worker has no order then. */
+/* The answer of a worker that has one, or its death, into the slot of its run. The worker has no
+ * order then. */
 static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
 {
     const int index = w->busy;
@@ -331,7 +351,8 @@ static bool wait_for_answers(struct campaign *c, struct pollfd *p, int64_t us, s
 {
     const struct timespec most = {us / 1000000, us % 1000000 * 1000};
     for (int i = 0; i < c->nworker; i++)
-        p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
+        p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1,
+                               .events = POLLIN};
     if (ppoll(p, (nfds_t)c->nworker, &most, NULL) >= 0) return true;
     for (int i = 0; i < c->nworker; i++) p[i].revents = 0;
     return errno == EINTR || err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
@@ -355,7 +376,8 @@ static bool serve(struct campaign *c, struct err *e)
     return true;
 }
 
-/* Give runs of the dealer to idle workers. Returns how many are busy then; *active when one was given. */
+/* Give runs of the dealer to idle workers. Returns how many are busy then; *active when one was
+ * given. */
 static int deal(struct campaign *c, const struct run_dealer *d, bool *more, bool *active)
 {
     int busy = 0;
@@ -370,8 +392,8 @@ static int deal(struct campaign *c, const struct run_dealer *d, bool *more, bool
     return busy;
 }
 
-/* Until the dealer has no more. It must be asked again and again, as its news come by another way than pipes: often
- * while something happens, ever less often while nothing does. */
+/* Until the dealer has no more. It must be asked again and again, as its news come by another way
+ * than pipes: often while something happens, ever less often while nothing does. */
 static bool serve_stream(struct campaign *c, const struct run_dealer *d, struct err *e)
 {
     int64_t pause = LEAST_PAUSE_US;
@@ -419,7 +441,8 @@ static bool run_here(struct campaign *c)
         const struct run_order own = own_order(c->order, i, c->cores, c->heartbeat);
         struct err why;
         err_clear(&why);
-        if (run_sharing(&c->spec[i], &own, cache, arena, &result, &why)) ok = c->done(c->context, &c->spec[i], &result);
+        if (run_sharing(&c->spec[i], &own, cache, arena, &result, &why))
+            ok = c->done(c->context, &c->spec[i], &result);
         else ok = hand_refused(c, i, &why);
         arena_destroy(arena);
         c->ndone++;
@@ -430,7 +453,8 @@ static bool run_here(struct campaign *c)
 }
 
 /* On `workers` processes, in plan order, or as `dealer` (NULL: nobody) says. */
-static bool run_workers(struct campaign *c, int workers, const struct run_dealer *dealer, struct err *e)
+static bool run_workers(struct campaign *c, int workers, const struct run_dealer *dealer,
+                        struct err *e)
 {
     c->slot = memory_zeroed((size_t)c->nspec, sizeof *c->slot);
     c->arena = memory_zeroed((size_t)c->nspec, sizeof *c->arena);
@@ -451,7 +475,8 @@ static bool run_workers(struct campaign *c, int workers, const struct run_dealer
     return ok;
 }
 
-/* Memory that workers share with the parent, all zero; NULL when there is none, which only costs a remark. */
+/* Memory that workers share with the parent, all zero; NULL when there is none, which only costs a
+ * remark. */
 static struct run_heartbeat *heartbeats_make(void)
 {
     void *p = mmap(NULL, MOST_WORKERS * sizeof(struct run_heartbeat), PROT_READ | PROT_WRITE,
@@ -459,10 +484,16 @@ static struct run_heartbeat *heartbeats_make(void)
     return p == MAP_FAILED ? NULL : p;
 }
 
-bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
-                  bool quiet, run_done_fn *done, void *context, struct err *e)
+bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec,
+                  const bool *skip, int workers, bool quiet, run_done_fn *done, void *context,
+                  struct err *e)
 {
-    struct campaign c = {.spec = spec, .order = order, .nspec = nspec, .skip = skip, .done = done, .context = context};
+    struct campaign c = {.spec = spec,
+                         .order = order,
+                         .nspec = nspec,
+                         .skip = skip,
+                         .done = done,
+                         .context = context};
     bool apart = false; /* people's code never runs in this process */
     for (int i = 0; i < nspec; i++) {
         if (skip && skip[i]) continue;
@@ -480,7 +511,8 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
     /* Runs side by side share the processors. */
     c.cores = online > workers ? online / workers : 1;
     if (!quiet) c.heartbeat = heartbeats_make();
-    if (c.heartbeat && workers <= 1 && !apart) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
+    if (c.heartbeat && workers <= 1 && !apart)
+        c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
     struct interrupts before;
     interrupts_begin(&before);
     bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);
@@ -494,6 +526,7 @@ bool run_stream(const struct run_spec *spec, const struct run_order *order, int 
                 const struct run_dealer *dealer, struct err *e)
 {
     struct campaign c = {
-        .spec = spec, .order = order, .nspec = nspec, .done = dealer->done, .context = dealer->context};
+        .spec = spec, .order = order, .nspec = nspec, .done = dealer->done,
+        .context = dealer->context};
     return run_workers(&c, workers < MOST_WORKERS ? workers : MOST_WORKERS, dealer, e);
 }

@@ -26,7 +26,8 @@ static void program(struct comm *c, void *context)
 }
 
 /* Taken one by one: all of it will be touched, so the arena may use large pages. */
-static char **make_workspaces(const struct program_run *r, const struct world_load *load, struct arena *a)
+static char **make_workspaces(const struct program_run *r, const struct world_load *load,
+                              struct arena *a)
 {
     int first, end;
     char **w = TAKE(a, r->spec.nrank, char *);
@@ -59,8 +60,8 @@ static struct world_load load_of(const struct program_run *r, int64_t largest)
                                .leftovers = r->rank->leftovers};
 }
 
-const char *launch_alone(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
-                         int64_t largest)
+const char *launch_alone(const struct program_run *r, const struct machine_spec *m,
+                         const struct record_spec *record, int64_t largest)
 {
     const struct world_load load = load_of(r, largest);
     return world_alone(m, &load, record);
@@ -77,9 +78,9 @@ int launch_threads(int asked, int cores, int nrank)
     return threads > 0 ? threads : 1;
 }
 
-bool launch_run(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
-                uint64_t seed, int64_t largest, struct arena *scratch, struct arena *a, struct run_result *out,
-                struct err *e)
+bool launch_run(const struct program_run *r, const struct machine_spec *m,
+                const struct record_spec *record, uint64_t seed, int64_t largest,
+                struct arena *scratch, struct arena *a, struct run_result *out, struct err *e)
 {
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     struct world_load load = load_of(r, largest);
@@ -93,10 +94,11 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m, const
     struct launch l = {r->rank, r->job, make_workspaces(r, &load, scratch)};
     load.context = &l;
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
-    if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts)) return true;
+    if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts))
+        return true;
     if (load.hosts && load.hosts->rank > 0) return true;
-    /* Of several ranks that fail, one is told: the first on one thread. Which one is first on several depends on the
-     * host, so such a run is made again on one. */
+    /* Of several ranks that fail, one is told: the first on one thread. Which one is first on
+     * several depends on the host, so such a run is made again on one. */
     arena_release(a, results);
     arena_release(scratch, work);
     memset(out, 0, sizeof *out);

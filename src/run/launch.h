@@ -1,4 +1,5 @@
-/* launch.h - a prepared run of a program on the virtual processors of a machine: workspaces and every rank's text. */
+/* launch.h - a prepared run of a program on the virtual processors of a machine: workspaces and
+ * every rank's text. */
 #ifndef RUN_LAUNCH_H
 #define RUN_LAUNCH_H
 
@@ -11,17 +12,19 @@
 #include "program/program.h"
 #include "spec/run_spec.h"
 
-/* launch_largest_message: what the program promises of its messages [B], -1: nothing. After open. */
+/* launch_largest_message: what the program promises of its messages [B], -1: nothing. After
+ * open. */
 int64_t launch_largest_message(const struct program_run *r);
 
-/* launch_alone: why such a run takes one host thread whatever was asked for, NULL: it may take several (world_alone).
- * After open. launch_threads: how many it takes otherwise, of those `asked` for on `cores`
- * processors (run_order). */
-const char *launch_alone(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
-                         int64_t largest);
+/* launch_alone: why such a run takes one host thread whatever was asked for, NULL: it may take
+ * several (world_alone). After open. launch_threads: how many it takes otherwise, of those `asked`
+ * for on `cores` processors (run_order). */
+const char *launch_alone(const struct program_run *r, const struct machine_spec *m,
+                         const struct record_spec *record, int64_t largest);
 int launch_threads(int asked, int cores, int nrank);
 
-/* launch_run: run the ranks of `r`, which has been prepared, to the end on virtual processors of machine `m`.
+/* launch_run: run the ranks of `r`, which has been prepared, to the end on virtual processors of
+ * machine `m`.
  *
  *   record, seed  in   see world_run
  *   largest       in   the promise that world_run may rely on, see world_load
@@ -29,8 +32,8 @@ int launch_threads(int asked, int cores, int nrank);
  *   a, out        out  the result, with its arrays in `a`
  *
  *   Returns false as world_run. */
-bool launch_run(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
-                uint64_t seed, int64_t largest, struct arena *scratch, struct arena *a, struct run_result *out,
-                struct err *e);
+bool launch_run(const struct program_run *r, const struct machine_spec *m,
+                const struct record_spec *record, uint64_t seed, int64_t largest,
+                struct arena *scratch, struct arena *a, struct run_result *out, struct err *e);
 
 #endif

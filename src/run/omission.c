@@ -16,7 +16,8 @@ int64_t omission_largest_message(const struct program_run *r)
 struct machine_spec omission_machine(const struct run_spec *spec)
 {
     struct machine_spec m = spec->machine;
-    if ((spec->keep & KEEP_CONTENTION) && m.network.level == LEVEL_AUTO) m.network.level = LEVEL_PACKET;
+    if ((spec->keep & KEEP_CONTENTION) && m.network.level == LEVEL_AUTO)
+        m.network.level = LEVEL_PACKET;
     return m;
 }
 
@@ -29,7 +30,8 @@ struct record_spec omission_record(const struct run_spec *spec)
     return r;
 }
 
-/* Sends need no event of their own where every message is eager: always, or because the largest is. */
+/* Sends need no event of their own where every message is eager: always, or because the largest
+ * is. */
 static void list_starts(const struct program_run *r, struct left_out *l)
 {
     const enum network_level level = r->spec.machine.network.level;
@@ -37,9 +39,11 @@ static void list_starts(const struct program_run *r, struct left_out *l)
     const int64_t largest = launch_largest_message(r);
     if (level != LEVEL_LINK && level != LEVEL_PACKET && level != LEVEL_AUTO) return;
     if (eager == INT64_MAX)
-        leave_out_add(l, 0, 0, "events that start messages", "the machine sends every message at once, in order");
+        leave_out_add(l, 0, 0, "events that start messages",
+                      "the machine sends every message at once, in order");
     else if (largest >= 0 && largest <= eager)
-        leave_out_add(l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
+        leave_out_add(l, KEEP_START_EVENTS, 0, "events that start messages",
+                      "eager sends are in order");
 }
 
 /* What the program leaves out, then what this room does. Each is listed once, with the bit that
@@ -54,8 +58,10 @@ int omission_listing(const struct program_run *r, struct omission *out)
     if (spec->machine.network.level == LEVEL_AUTO)
         leave_out_add(&l, KEEP_CONTENTION, 0, "contention where routes share no link",
                       "level auto has the packet level's times");
-    if (!spec->record.spans) leave_out_add(&l, KEEP_SPANS, 0, "timeline", "record.spans does not ask for it");
+    if (!spec->record.spans)
+        leave_out_add(&l, KEEP_SPANS, 0, "timeline", "record.spans does not ask for it");
     if (!spec->record.links)
-        leave_out_add(&l, KEEP_LINKS, 0, "counters of single links", "record.links does not ask for them");
+        leave_out_add(&l, KEEP_LINKS, 0, "counters of single links",
+                      "record.links does not ask for them");
     return l.n;
 }

@@ -19,7 +19,7 @@
 #include "run/omission.h"
 #include "schedule/schedule_program.h"
 
-/* --- what runs share ---------------------------------------------------------------------------------------------- */
+/* --- what runs share -------------------------------------------------------------------------- */
 
 /* MOST_ATTEMPTS: no program asks for as many (kernel/trust.c). */
 enum { MOST_CACHES = 8, MOST_ATTEMPTS = 16, TAG_VERDICT = 400 };
@@ -55,17 +55,18 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
     return c->cache[c->n++] = type->cache_create();
 }
 
-/* --- one run ------------------------------------------------------------------------------------------------------ */
+/* --- one run ---------------------------------------------------------------------------------- */
 
 const struct program_type *run_program(const struct run_spec *spec)
 {
     /* By kind, not by name: somebody's program may be called as a built-in one. */
     if (!spec->kernel.own) return program_find(spec->kernel.name);
-    return spec->program.kind == PROGRAM_SCHEDULE ? &schedule_program : guest_program(spec->program.kind);
+    return spec->program.kind == PROGRAM_SCHEDULE ? &schedule_program
+                                                  : guest_program(spec->program.kind);
 }
 
-bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
-              struct program_run *r, struct err *e)
+bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache,
+              struct arena *a, struct program_run *r, struct err *e)
 {
     *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
     /* How a run is executed is no part of its identity: an order changes this copy of the
@@ -73,12 +74,15 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
     if (order) r->threads = order->threads, r->cores = order->cores;
     if (order) r->hosts = order->hosts, r->job_run = order->job_run * MOST_ATTEMPTS;
-    if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
+    if (order)
+        r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
-        return err_set(e, ERR_CONFIG, "program '%s' is not at hand: only a scenario says where it is",
+        return err_set(e, ERR_CONFIG,
+                       "program '%s' is not at hand: only a scenario says where it is",
                        spec->kernel.name);
     if (!r->type)
-        return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", spec->kernel.name);
+        return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them",
+                       spec->kernel.name);
     r->cache = cache_of(cache, r->type);
     return r->type->open(r, e);
 }
@@ -93,8 +97,8 @@ void run_close(struct program_run *r)
 static bool chief(const struct program_run *r) { return !r->hosts || r->hosts->rank == 0; }
 
 /* The ranks once, with the settings that are in force now. */
-static bool attempt(struct program_run *r, struct arena *scratch, struct arena *a, struct run_result *out,
-                    struct err *e)
+static bool attempt(struct program_run *r, struct arena *scratch, struct arena *a,
+                    struct run_result *out, struct err *e)
 {
     /* What --keep-all and `explain --measure` undo acts here: the spec itself stays as it is. */
     const struct machine_spec machine = omission_machine(&r->spec);
@@ -102,21 +106,23 @@ static bool attempt(struct program_run *r, struct arena *scratch, struct arena *
     memset(out, 0, sizeof *out);
     out->residual = out->measured_s = NAN;
     if (!r->type->prepare(r, scratch, e)) return false;
-    if (!launch_run(r, &machine, &record, run_spec_seed(&r->spec), omission_largest_message(r), scratch, a, out, e))
+    if (!launch_run(r, &machine, &record, run_spec_seed(&r->spec), omission_largest_message(r),
+                    scratch, a, out, e))
         return false;
     out->residual = out->measured_s = NAN;
     if (out->status == RUN_OK && chief(r) && r->type->judge) r->type->judge(r, out);
     return true;
 }
 
-/* Whether the program asks for one more attempt. Processes that share a run learn it from the one that has the answers,
- * with the settings that the program has changed. */
+/* Whether the program asks for one more attempt. Processes that share a run learn it from the one
+ * that has the answers, with the settings that the program has changed. */
 static bool once_more(struct program_run *r, struct run_result *out)
 {
     struct {
         bool more;
         struct kernel_spec kernel;
-    } verdict = {.more = chief(r) && r->type->again && r->type->again(r, out), .kernel = r->spec.kernel};
+    } verdict = {.more = chief(r) && r->type->again && r->type->again(r, out),
+                 .kernel = r->spec.kernel};
     if (!r->hosts || out->job_broken) return verdict.more;
     if (!hosts_tell(r->hosts, TAG_VERDICT, &verdict, sizeof verdict)) {
         out->job_broken = true;
@@ -128,8 +134,8 @@ static bool once_more(struct program_run *r, struct run_result *out)
 }
 
 /* Attempts until the program asks for no more; only the last leaves anything in the arenas. */
-static bool attempts(struct program_run *r, struct arena *scratch, struct arena *a, struct run_result *out,
-                     struct err *e)
+static bool attempts(struct program_run *r, struct arena *scratch, struct arena *a,
+                     struct run_result *out, struct err *e)
 {
     /* A program asks again when its residual is too large: the next attempt has more refinement. */
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
@@ -143,9 +149,13 @@ static bool attempts(struct program_run *r, struct arena *scratch, struct arena 
 }
 
 /* The node's prices as a function, for room program, which does not know machines. */
-static int64_t price_ps(const void *context, const struct work *w) { return node_cost_ps(context, w); }
+static int64_t price_ps(const void *context, const struct work *w)
+{
+    return node_cost_ps(context, w);
+}
 
-/* A serial code that takes longer than simulated time is: there is no speedup to tell, so the run has failed. */
+/* A serial code that takes longer than simulated time is: there is no speedup to tell, so the run
+ * has failed. */
 static void refuse_long_baselines(struct run_result *out)
 {
     const struct baseline *b = NULL;
@@ -154,7 +164,8 @@ static void refuse_long_baselines(struct run_result *out)
     if (!b) return;
     /* Nothing of the run is kept that would need the missing time. */
     snprintf(out->text, sizeof out->text,
-             "simulated time ends at %.3g s: the parallel run took %.6g s, and '%s' on one processor takes longer",
+             "simulated time ends at %.3g s: the parallel run took %.6g s, and '%s' on one "
+             "processor takes longer",
              PS_LAST * 1e-12, (double)out->makespan_ps * 1e-12, b->name);
     out->status = RUN_FAILED;
     out->makespan_ps = 0;
@@ -195,12 +206,14 @@ static void describe(void *context, char *buffer, int size)
 {
     const struct run_spec *s = context;
     snprintf(buffer, (size_t)size,
-             "in a run of scenario '%s': kernel %s, n = %d, %d ranks on %s, seed %llu, repetition %d", s->scenario,
-             s->kernel.name, s->model.nbody, s->nrank, s->machine.name, (unsigned long long)s->seed, s->rep);
+             "in a run of scenario '%s': kernel %s, n = %d, %d ranks on %s, seed %llu, repetition "
+             "%d",
+             s->scenario, s->kernel.name, s->model.nbody, s->nrank, s->machine.name,
+             (unsigned long long)s->seed, s->rep);
 }
 
-bool run_sharing(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
-                 struct run_result *out, struct err *e)
+bool run_sharing(const struct run_spec *spec, const struct run_order *order,
+                 struct run_cache *cache, struct arena *a, struct run_result *out, struct err *e)
 {
     memset(out, 0, sizeof *out);
     const double begin = host_seconds();
@@ -208,7 +221,8 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
     if (spec->refused) return err_set(e, (enum err_kind)spec->refused_kind, "%s", spec->refused);
     if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
         return err_set(e, ERR_CONFIG,
-                       "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
+                       "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a "
+                       "level");
     /* Three arenas: `a` for the result, `own` for the program's scene, `scratch` for ranks and
      * checks. */
     struct arena *own = arena_create(), *scratch = arena_create();
@@ -240,7 +254,7 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
     return ok;
 }
 
-/* --- before it runs ----------------------------------------------------------------------------------------------- */
+/* --- before it runs --------------------------------------------------------------------------- */
 
 /* What the stack of a rank is assumed to touch: two pages. */
 enum { STACK_PAGES_BYTES = 2 * 4096 };
@@ -268,10 +282,12 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->alone = launch_alone(&r, &machine, &record, omission_largest_message(&r));
         out->threads = out->alone ? 1 : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank);
         out->nunused = r.type->unused ? r.type->unused(&r, out->unused) : 0;
-        /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
+        /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a
+         * rank's own. */
         const double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
-        out->host_bytes = spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + 1400.0) + (double)out->nbody * 1200.0;
+        out->host_bytes =
+            spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + 1400.0) + (double)out->nbody * 1200.0;
     }
     run_close(&r);
     run_cache_destroy(cache);

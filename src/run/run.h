@@ -10,34 +10,39 @@
 #include "program/program.h"
 #include "spec/run_spec.h"
 
-/* run_one: build the model, run the kernel on the machine, compare with the serial references, fill the baselines.
+/* run_one: build the model, run the kernel on the machine, compare with the serial references, fill
+ * the baselines.
  *
  *   spec  in   resolved
  *   a     in   memory of the result's arrays; scratch is released
- *   out   out  always filled when true is returned; a wrong number gives status RUN_INVALID with its text
+ *   out   out  always filled when true is returned; a wrong number gives status RUN_INVALID with
+ * its text
  *
- *   Returns false with ERR_CONFIG, ERR_DATA, ERR_NO_INPUT or ERR_INTERNAL when the run cannot be made. */
+ *   Returns false with ERR_CONFIG, ERR_DATA, ERR_NO_INPUT or ERR_INTERNAL when the run cannot be
+ * made. */
 bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e);
 
-/* What the runs of a campaign share: scenes and their serial answers. The caller owns it; destroy accepts NULL. */
+/* What the runs of a campaign share: scenes and their serial answers. The caller owns it; destroy
+ * accepts NULL. */
 struct run_cache;
 struct run_cache *run_cache_create(void);
 void run_cache_destroy(struct run_cache *cache);
 
-/* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. `order`: how
- * the run is executed, NULL: as usual. */
-bool run_sharing(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
-                 struct run_result *out, struct err *e);
+/* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. `order`:
+ * how the run is executed, NULL: as usual. */
+bool run_sharing(const struct run_spec *spec, const struct run_order *order,
+                 struct run_cache *cache, struct arena *a, struct run_result *out, struct err *e);
 
 /* run_program: the program of `spec`, built in or a person's own; NULL: there is none. */
 const struct program_type *run_program(const struct run_spec *spec);
 
-/* run_open: the program of `spec`, opened (program.h) but not prepared; memory from `a`, which must live as long as
- * *r, as must `cache`. Returns false as run_one. */
-bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
-              struct program_run *r, struct err *e);
+/* run_open: the program of `spec`, opened (program.h) but not prepared; memory from `a`, which must
+ * live as long as *r, as must `cache`. Returns false as run_one. */
+bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache,
+              struct arena *a, struct program_run *r, struct err *e);
 
-/* run_close: give back what an opened program took beside its arenas; also after run_open failed. */
+/* run_close: give back what an opened program took beside its arenas; also after run_open
+ * failed. */
 void run_close(struct program_run *r);
 
 /* What `mimdsim explain` shows of one run before it runs. */
@@ -59,16 +64,20 @@ struct run_estimate {
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e);
 
 /* run_done_fn: called in plan order with each result; return false to stop the campaign. */
-typedef bool run_done_fn(void *context, const struct run_spec *spec, const struct run_result *result);
+typedef bool run_done_fn(void *context, const struct run_spec *spec,
+                         const struct run_result *result);
 
-/* A run that is refused, or whose worker process dies, is handed over as a result, too: RUN_FAILED with its reason.
+/* A run that is refused, or whose worker process dies, is handed over as a result, too: RUN_FAILED
+ * with its reason.
  *
- * run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
- * 1: in this process), executed as `order` (nspec; NULL: as usual) says but for its heartbeat, which is the campaign's
- * own. Code of people's own programs runs in worker processes only, each run in a new one, and a crash is told by rank
- * and line. Results are handed over in plan order, so the outcome does not depend on `workers`. */
-bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
-                  bool quiet, run_done_fn *done, void *context, struct err *e);
+ * run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as
+ * processors online; 1: in this process), executed as `order` (nspec; NULL: as usual) says but for
+ * its heartbeat, which is the campaign's own. Code of people's own programs runs in worker
+ * processes only, each run in a new one, and a crash is told by rank and line. Results are handed
+ * over in plan order, so the outcome does not depend on `workers`. */
+bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec,
+                  const bool *skip, int workers, bool quiet, run_done_fn *done, void *context,
+                  struct err *e);
 
 /* run_refused: what a run that could not be made leaves: its status, and why. */
 struct run_result run_refused(const struct err *why);
@@ -76,15 +85,17 @@ struct run_result run_refused(const struct err *why);
 /* Somebody who deals out runs, one at a time. */
 enum { RUN_LATER = -1, RUN_NO_MORE = -2 };
 struct run_dealer {
-    int (*next)(void *context); /* the number of the next run; RUN_LATER: none now; RUN_NO_MORE: none any more */
-    /* attend: called again and again while runs are made; *active when there was something to do. False with the error
-     * set stops all. */
+    /* the number of the next run; RUN_LATER: none now; RUN_NO_MORE: none any more */
+    int (*next)(void *context);
+    /* attend: called again and again while runs are made; *active when there was something to do.
+     * False with the error set stops all. */
     bool (*attend)(void *context, bool *active, struct err *e);
     run_done_fn *done; /* called when a result is there, in any order */
     void *context;
 };
 
-/* run_stream: as run_campaign, of the runs that `dealer` names, each once and each in a worker process. */
+/* run_stream: as run_campaign, of the runs that `dealer` names, each once and each in a worker
+ * process. */
 bool run_stream(const struct run_spec *spec, const struct run_order *order, int nspec, int workers,
                 const struct run_dealer *dealer, struct err *e);
 

@@ -391,8 +391,7 @@ static bool read_ranks(struct reader *g)
     for (int i = 0; i < nrank; i++)
         if (g->b->begin[i] < 0)
             return err_set_at(g->err, ERR_DATA, g->path, g->line,
-                              "no schedule of rank %d; expected %lld ranks, each "
-                              "once",
+                              "no schedule of rank %d; expected %lld ranks, each once",
                               i, (long long)nrank);
     return true;
 }

@@ -159,8 +159,7 @@ struct schedule *schedule_finish(struct schedule_builder *b, const char *path, s
     if (circle == 0) return s;
     err_set_at(e, ERR_DATA, path, s->op[some].line,
                "%lld operations of the schedule wait for each other in circles; the first of them "
-               "is number %lld of "
-               "rank %d",
+               "is number %lld of rank %d",
                (long long)circle, (long long)(some - s->first[rank_of(s, some)]), rank_of(s, some));
     return NULL;
 }

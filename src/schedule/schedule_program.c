@@ -108,8 +108,7 @@ static bool times_fit(const struct schedule *s, int64_t unit, const char *path, 
         if (s->op[i].kind == SCHEDULE_COMPUTE && s->op[i].size > PS_LAST / unit)
             return err_set_at(e, ERR_DATA, path, s->op[i].line,
                               "a computing time of %lld times %lld ps; expected at most the "
-                              "largest simulated time, "
-                              "%.3g s",
+                              "largest simulated time, %.3g s",
                               (long long)s->op[i].size, (long long)unit, (double)PS_LAST * 1e-12);
     return true;
 }

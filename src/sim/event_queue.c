@@ -3,8 +3,8 @@
  *
  * Example, in windows: the present is window 0, events lie in windows 5, 70 and 5000. Level 0 holds
  * 5; level 1 (64 windows a bucket) holds 70 in bucket 1; level 2 (4096 windows a bucket) holds 5000
- * in bucket 1. When 5 is done, bucket 1 of level 1 is spread from window 64 on: 70 moves to level 0.
- * An event is moved at most once a level.
+ * in bucket 1. When 5 is done, bucket 1 of level 1 is spread from window 64 on: 70 moves to level
+ * 0. An event is moved at most once a level.
  *
  * Events of one time stay in the order of posting wherever they are, since they are always in the
  * same bucket and buckets are appended to and read in order. So no event carries its age, and
@@ -307,8 +307,8 @@ static inline bool run_first(const struct event_queue *q)
     return time != h->time ? time < h->time : k->order <= h->order;
 }
 
-/* Records that events are about lie anywhere in memory, each reached through the one before: what an
- * event's argument points to is asked for FAR events ahead, the rest in two more steps. */
+/* Records that events are about lie anywhere in memory, each reached through the one before: what
+ * an event's argument points to is asked for FAR events ahead, the rest in two more steps. */
 static inline void warm_up(const struct event_queue *q)
 {
     enum { FAR = 8, STEPS = 2, STEP = 3 };

@@ -1,10 +1,11 @@
 /* event_queue.h - what happens next, in the total order (time, lane and key, order of posting).
  *
- * Simulated time never goes back, and most events are posted a short while ahead: a wheel of wheels (Varghese and
- * Lauck, 1987). Time is cut into windows of 2^WINDOW_BITS ps. Level l holds the events whose window first differs from
- * the present one in bits 6 l .. 6 l + 5 of its number, one bucket per value of these bits; a bucket is spread over the
- * lower levels when its turn comes. A window is shorter than the latency of any link, so an event is moved once or
- * twice, whatever the number pending. The events of a window are sorted when it comes; those posted within the present
+ * Simulated time never goes back, and most events are posted a short while ahead: a wheel of wheels
+ * (Varghese and Lauck, 1987). Time is cut into windows of 2^WINDOW_BITS ps. Level l holds the
+ * events whose window first differs from the present one in bits 6 l .. 6 l + 5 of its number, one
+ * bucket per value of these bits; a bucket is spread over the lower levels when its turn comes. A
+ * window is shorter than the latency of any link, so an event is moved once or twice, whatever the
+ * number pending. The events of a window are sorted when it comes; those posted within the present
  * window wait in a heap. */
 #ifndef SIM_EVENT_QUEUE_H
 #define SIM_EVENT_QUEUE_H
@@ -30,7 +31,8 @@ struct event_late {
 
 enum { CHUNK_EVENTS = 32 };
 
-/* Buckets of the future are chains of chunks from one pool, so that memory follows the number pending. */
+/* Buckets of the future are chains of chunks from one pool, so that memory follows the number
+ * pending. */
 struct event_chunk {
     struct event_chunk *next;
     uint32_t count;
@@ -60,7 +62,8 @@ struct event_queue {
     uint64_t window;              /* number of the present window */
     uint64_t next_age;
     uint64_t count;               /* pending, all together */
-    struct event_chunk **run;     /* (run_chunks) owned: the events of this window that were posted before it, */
+    /* (run_chunks) owned: the events of this window that were posted before it, */
+    struct event_chunk **run;
     struct event_key *key;        /* (run_count) owned: sorted; */
     struct event_key *scratch;    /* (key_capacity) owned: for sorting */
     uint32_t run_at, run_count, run_chunks, chunk_capacity, key_capacity;

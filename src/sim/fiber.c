@@ -1,5 +1,5 @@
-/* fiber.c - stacks from one reserved mapping; switching by Boost.Context's assembly or by ucontext.
- */
+/* fiber.c - stacks from one reserved mapping; switching by Boost.Context's assembly or by
+ * ucontext. */
 #include "config.h"
 
 #include "sim/fiber.h"
@@ -100,7 +100,8 @@ static void sanitizer_fresh(void *memory, size_t bytes)
     __asan_unpoison_memory_region(memory, bytes);
 }
 #elif defined THREAD_SANITIZER
-/* The thread sanitizer keeps the calls of each fiber apart, and must hear of each switch before it. */
+/* The thread sanitizer keeps the calls of each fiber apart, and must hear of each switch before
+ * it. */
 static void sanitizer_enter(struct fiber *f)
 {
     if (!f->tsan_fiber) f->tsan_fiber = __tsan_create_fiber(0);

@@ -1,8 +1,8 @@
 /* fiber.h - functions that can be left and entered again: stackful coroutines on one host thread.
  *
- * Stacks come from one mapping, reserved and not committed: only touched pages cost memory. Below each stack lies a
- * guard page as long as the system allows more of them (guard.h), and beyond that a spare page that must stay
- * untouched. */
+ * Stacks come from one mapping, reserved and not committed: only touched pages cost memory. Below
+ * each stack lies a guard page as long as the system allows more of them (guard.h), and beyond that
+ * a spare page that must stay untouched. */
 #ifndef SIM_FIBER_H
 #define SIM_FIBER_H
 
@@ -20,20 +20,25 @@ typedef void fiber_fn(void *argument);
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e);
 void fiber_pool_destroy(struct fiber_pool *p);
 
-/* fiber_start: make fiber number i (0 .. n-1) ready to run fn(argument) at its first fiber_enter. */
+/* fiber_start: make fiber number i (0 .. n-1) ready to run fn(argument) at its first
+ * fiber_enter. */
 struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argument);
 
-/* fiber_enter: run f until it leaves or returns; called from outside any fiber. True while f has not returned. */
+/* fiber_enter: run f until it leaves or returns; called from outside any fiber. True while f has
+ * not returned. */
 bool fiber_enter(struct fiber *f);
 
-/* fiber_prefetch: ask for the memory that fiber_enter(f) will touch first; no effect but on speed. */
+/* fiber_prefetch: ask for the memory that fiber_enter(f) will touch first; no effect but on
+ * speed. */
 void fiber_prefetch(const struct fiber *f);
 
-/* fiber_leave: go back to the caller of fiber_enter; returns at the next fiber_enter. Called inside f. */
+/* fiber_leave: go back to the caller of fiber_enter; returns at the next fiber_enter. Called inside
+ * f. */
 void fiber_leave(struct fiber *f);
 
-/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages. *overflowed: the fiber
- * whose stack was not enough, which shows in its spare page where there is no guard; -1: none. */
+/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages.
+ * *overflowed: the fiber whose stack was not enough, which shows in its spare page where there is
+ * no guard; -1: none. */
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed);
 
 /* fiber_pool_switches: number of fiber_enter calls so far. */

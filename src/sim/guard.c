@@ -2,7 +2,8 @@
  *
  * Since Linux 6.13 a page table can hold marks for pages that must not be touched (madvise(2),
  * MADV_GUARD_INSTALL): a thousand of them are set by one call and split no mapping. Before that
- * each guard is a mapping of its own: mprotect took 4 us a stack, a tenth of a run on 1024 ranks. */
+ * each guard is a mapping of its own: mprotect took 4 us a stack, a tenth of a run on 1024
+ * ranks. */
 #include "sim/guard.h"
 
 #include <stdio.h>

@@ -1,9 +1,11 @@
-/* field.h - the settings of every spec struct as tables: one row serves reading, checking, defaults and printing.
+/* field.h - the settings of every spec struct as tables: one row serves reading, checking, defaults
+ * and printing.
  *
- * A field is one setting: its key as written in files (`network.link.bandwidth`), where it lives in its struct, its
- * unit, range, default and one line of text. Values enter as text through field_set and leave as text through
- * field_print, which field_set reads back to the same bits. The tables of all structs of a run are field_tables;
- * the full key of a row is the table's prefix, a dot, and the row's key. */
+ * A field is one setting: its key as written in files (`network.link.bandwidth`), where it lives in
+ * its struct, its unit, range, default and one line of text. Values enter as text through field_set
+ * and leave as text through field_print, which field_set reads back to the same bits. The tables of
+ * all structs of a run are field_tables; the full key of a row is the table's prefix, a dot, and
+ * the row's key. */
 #ifndef SPEC_FIELD_H
 #define SPEC_FIELD_H
 
@@ -17,18 +19,19 @@
 #include "spec/run_spec.h"
 
 enum field_kind {
-    FIELD_REAL,     /* double, with `unit` */
-    FIELD_INT,      /* int */
-    FIELD_INT64,    /* int64_t; with unit UNIT_BYTES a size, "unlimited" is -1 where min is -1 */
-    FIELD_SEED,     /* uint64_t, printed exactly */
-    FIELD_BOOL,     /* bool */
-    FIELD_CHOICE,   /* an enum counted from 0: `choice` names its values */
-    FIELD_TEXT,     /* char[capacity] */
-    FIELD_INTS,     /* int[capacity], number of entries in the int at offset `count` */
-    FIELD_REALS,    /* double[capacity] */
-    FIELD_INT_LIST, /* int *, length in the int at offset `count`, borrowed from an arena */
+    FIELD_REAL,      /* double, with `unit` */
+    FIELD_INT,       /* int */
+    FIELD_INT64,     /* int64_t; with unit UNIT_BYTES a size, "unlimited" is -1 where min is -1 */
+    FIELD_SEED,      /* uint64_t, printed exactly */
+    FIELD_BOOL,      /* bool */
+    FIELD_CHOICE,    /* an enum counted from 0: `choice` names its values */
+    FIELD_TEXT,      /* char[capacity] */
+    FIELD_INTS,      /* int[capacity], number of entries in the int at offset `count` */
+    FIELD_REALS,     /* double[capacity] */
+    FIELD_INT_LIST,  /* int *, length in the int at offset `count`, borrowed from an arena */
     FIELD_PAIR_LIST, /* int (*)[2], as FIELD_INT_LIST */
-    FIELD_SEGMENTS  /* struct software_segment[capacity], number of entries in the int at offset `count` */
+    FIELD_SEGMENTS   /* struct software_segment[capacity], number of entries in the int at offset
+                        `count` */
 };
 
 /* Why a setting cannot act in `run` (a clause), NULL when it acts. */
@@ -40,15 +43,17 @@ struct field {
     enum unit unit;            /* of reals and sizes */
     size_t offset;             /* in the table's struct */
     size_t count;              /* offset of the number of entries of a list, 0: none */
-    int capacity;              /* of FIELD_TEXT (bytes), FIELD_INTS, FIELD_REALS, FIELD_SEGMENTS (entries) */
+    /* of FIELD_TEXT (bytes), FIELD_INTS, FIELD_REALS, FIELD_SEGMENTS (entries) */
+    int capacity;
     int at_least;              /* FIELD_REALS: entries that have to be given; the others are 0 */
     double min, max;           /* inclusive, of every entry, SI */
     const char *const *choice; /* NULL-terminated */
     const char *fallback;      /* default as text; NULL: has to be given */
     const char *doc;           /* one line for the manual */
     field_idle_fn *idle;       /* NULL: acts in every run */
-    bool (*valid)(const char *text, char *why, int size); /* FIELD_TEXT: whether it may be this, else a clause why not;
-                                                             NULL: any text may */
+    bool (*valid)(const char *text, char *why,
+                  int size);   /* FIELD_TEXT: whether it may be this, else a clause why not;
+                                  NULL: any text may */
     bool label;                /* true: for people only, no part of a run's identity */
 };
 
@@ -62,22 +67,27 @@ struct field_table {
     const struct field *field;
 };
 
-/* field_tables: the tables in the order of a run's configuration: run, machine, model, kernel. *n pointers. */
+/* field_tables: the tables in the order of a run's configuration: run, machine, model, kernel. *n
+ * pointers. */
 const struct field_table *const *field_tables(int *n);
 
 /* field_find: row of `key` (without prefix) in `t`, or -1. */
 int field_find(const struct field_table *t, const char *key);
 
-/* field_find_full: the row of a full key ("machine.network.link.bandwidth"); NULL when there is none. */
+/* field_find_full: the row of a full key ("machine.network.link.bandwidth"); NULL when there is
+ * none. */
 const struct field *field_find_full(const char *key, const struct field_table **table);
 
 /* field_set: read `text` into its place in `base` (the table's struct).
  *
  *   a     memory of list fields
- *   why   on failure, buffer of `size` bytes with what was expected, as a clause; with the nearest valid choice
+ *   why   on failure, buffer of `size` bytes with what was expected, as a clause; with the nearest
+ * valid choice
  *
- *   Returns false on a missing or wrong unit, a number out of range or not finite, an unknown choice. */
-bool field_set(const struct field *f, void *base, const char *text, struct arena *a, char *why, int size);
+ *   Returns false on a missing or wrong unit, a number out of range or not finite, an unknown
+ * choice. */
+bool field_set(const struct field *f, void *base, const char *text, struct arena *a, char *why,
+               int size);
 
 /* field_defaults: every field of `t` that has a default gets it; the struct is zeroed first. */
 void field_defaults(const struct field_table *t, void *base, struct arena *a);
@@ -85,11 +95,12 @@ void field_defaults(const struct field_table *t, void *base, struct arena *a);
 /* field_print: the value as text that field_set reads back to the same bits, appended to *out. */
 void field_print(const struct field *f, const void *base, struct text *out);
 
-/* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with the rows that are
- * for people only. */
+/* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with
+ * the rows that are for people only. */
 void fields_print(const struct field_table *t, const void *base, bool labels, struct text *out);
 
-/* fields_config: all settings of a run, without labels and the repetition number. identity.h: what identifies it. */
+/* fields_config: all settings of a run, without labels and the repetition number. identity.h: what
+ * identifies it. */
 void fields_config(const struct run_spec *run, struct text *out);
 
 /* fields_document: the reference manual of all settings, in Markdown. */

@@ -59,8 +59,9 @@ static bool scan_ints(const struct field *f, const char *text, int *value, int c
         /* A separator separates: behind it there is a number. */
         s = skip_blanks(s + 1);
         if (*s == '\0' || *s == ']')
-            return field_refuse(why, size, "a number is missing at the end; expected a list such as "
-                                           "'[8, 4, 4]' or '8x4x4'");
+            return field_refuse(why, size,
+                                "a number is missing at the end; expected a list such as '[8, 4, "
+                                "4]' or '8x4x4'");
     }
     /* A bracket on one side only, or something behind the closing one. */
     if (bracket != (*s == ']') || (bracket && *skip_blanks(s + 1) != '\0'))

@@ -168,8 +168,7 @@ static const char *take_segment(const char *s, int number, struct software_segme
     if (seen[NROW - 1] && out->protocol == PROTOCOL_EAGER)
         return field_refuse(why, size,
                             "segment %d: rendezvous.latency of an eager segment; expected "
-                            "'protocol: rendezvous' or "
-                            "'protocol: synchronous' beside it",
+                            "'protocol: rendezvous' or 'protocol: synchronous' beside it",
                             number),
                NULL;
     return s + 1;

@@ -43,7 +43,8 @@ struct identity *identity_create(const struct field_table *const *table, int n)
 {
     struct identity *x = memory_zeroed(1, sizeof *x);
     struct arena *a = arena_create();
-    *x = (struct identity){.table = table, .n = n, .part = memory_zeroed((size_t)n, sizeof *x->part)};
+    *x = (struct identity){
+        .table = table, .n = n, .part = memory_zeroed((size_t)n, sizeof *x->part)};
     for (int i = 0; i < n; i++) {
         void *base = arena_take(a, table[i]->size);
         field_defaults(table[i], base, a);

@@ -1,10 +1,10 @@
-/* identity.h - what identifies a run: its settings that differ from their defaults, by name, in a canonical
- * text.
+/* identity.h - what identifies a run: its settings that differ from their defaults, by name, in a
+ * canonical text.
  *
- * Defaults are those of the field tables, so a machine file's values count where they differ from these. A
- * new setting with a default changes no identity. A default must never change without a new STORE_VERSION
- * (store/connection.h): the identities of stored runs are then computed anew from their full configurations.
- * tests/golden/defaults.txt guards it. */
+ * Defaults are those of the field tables, so a machine file's values count where they differ from
+ * these. A new setting with a default changes no identity. A default must never change without a
+ * new STORE_VERSION (store/connection.h): the identities of stored runs are then computed anew from
+ * their full configurations. tests/golden/defaults.txt guards it. */
 #ifndef SPEC_IDENTITY_H
 #define SPEC_IDENTITY_H
 
@@ -12,21 +12,23 @@
 #include "base/text.h"
 #include "spec/field.h"
 
-/* Makes identities of many runs; remembers the texts of structs that did not change since the run before. */
+/* Makes identities of many runs; remembers the texts of structs that did not change since the run
+ * before. */
 struct identity;
 
-/* identity_create: for runs with these `n` tables, field_tables as a rule; `table` is borrowed. The caller
- * owns it. */
+/* identity_create: for runs with these `n` tables, field_tables as a rule; `table` is borrowed. The
+ * caller owns it. */
 struct identity *identity_create(const struct field_table *const *table, int n);
 
 /* identity_destroy: accepts NULL. */
 void identity_destroy(struct identity *x);
 
-/* identity_forget: forget the texts of the run before. Lists are remembered by their place in memory: to be
- * called before the arena of earlier runs is released and used anew. */
+/* identity_forget: forget the texts of the run before. Lists are remembered by their place in
+ * memory: to be called before the arena of earlier runs is released and used anew. */
 void identity_forget(struct identity *x);
 
-/* identity_texts: the two canonical texts of the structs at `base`, appended, as "key = value" lines.
+/* identity_texts: the two canonical texts of the structs at `base`, appended, as "key = value"
+ * lines.
  *
  *   base  in   what the tables' offsets count from: a struct run_spec
  *   more  in   further "key = value" lines, which are part of both texts: what is told of files
@@ -43,8 +45,8 @@ void identity_set(struct identity *x, struct run_spec *run, struct arena *a);
 /* run_identify: identity_set for one run that was made from another one by changing settings. */
 void run_identify(struct run_spec *run, struct arena *a);
 
-/* run_from_text: the settings of a stored configuration `text` (config_text); what it does not name has its
- * default.
+/* run_from_text: the settings of a stored configuration `text` (config_text); what it does not name
+ * has its default.
  *
  *   run  out  settings, model_file and program, no identity yet; lists in `a`
  *   why  out  on failure, in `size` bytes: which line, and why

@@ -1,14 +1,14 @@
 /* joint_list.h - the joint types, one line each: all that rooms above need to know of one.
  *
- * A new joint type is a line here and a file joint_STEM.c in room dynamics that defines `joint_STEM`
- * (dynamics/joint_motion.h). Columns of X: constant, word in files, stem, coordinates, what it does
- * in the plane of a planar scene, traits. The comment says what q and u are.
+ * A new joint type is a line here and a file joint_STEM.c in room dynamics that defines
+ * `joint_STEM` (dynamics/joint_motion.h). Columns of X: constant, word in files, stem, coordinates,
+ * what it does in the plane of a planar scene, traits. The comment says what q and u are.
  *
  * Coordinates, in their order: a letter each, which gives the numbers of q and of u:
  *   a  an angle; u has its rate, or an angular rate proportional to it
  *   d  a displacement; u has a linear velocity
- *   q  a quaternion x y z w, turning body into joint-frame components, of any length but zero; u has
- *      the angular velocity relative to the parent in body axes (3)
+ *   q  a quaternion x y z w, turning body into joint-frame components, of any length but zero; u
+ * has the angular velocity relative to the parent in body axes (3)
  *
  * Joint type `mixed` draws among all types: one more changes the scenes that it makes. */
 #ifndef SPEC_JOINT_LIST_H
@@ -45,13 +45,13 @@
 
 /* What a joint type has besides its coordinates. */
 enum joint_trait {
-    JOINT_AXIS = 1,         /* an axis, not zero: z of the joint's own axes unless it is along x */
-    JOINT_ALONG_X = 2,      /* the axis is x of the joint's own axes */
-    JOINT_TWO_AXES = 4,     /* a second axis orthogonal to the first */
-    JOINT_NORMAL = 8,       /* the axis is a normal; the second one, if any, directs x */
-    JOINT_AS_IT_LIES = 16,  /* the body's frame is not turned to the axis: body.slide has the axes */
-    JOINT_PITCH = 32,       /* an advance per radian */
-    JOINT_IN_TREES = 64,    /* cannot close a loop */
+    JOINT_AXIS = 1,        /* an axis, not zero: z of the joint's own axes unless it is along x */
+    JOINT_ALONG_X = 2,     /* the axis is x of the joint's own axes */
+    JOINT_TWO_AXES = 4,    /* a second axis orthogonal to the first */
+    JOINT_NORMAL = 8,      /* the axis is a normal; the second one, if any, directs x */
+    JOINT_AS_IT_LIES = 16, /* the body's frame is not turned to the axis: body.slide has the axes */
+    JOINT_PITCH = 32,      /* an advance per radian */
+    JOINT_IN_TREES = 64,   /* cannot close a loop */
     JOINT_CLOSES_RINGS = 128 /* closes rings whose other joints are of its type */
 };
 

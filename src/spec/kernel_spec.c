@@ -7,9 +7,9 @@
  *
  *     thomas            serial block Cholesky on rank 0 (physics 5.1), the reference
  *     cr                cyclic reduction (5.2): backward stable, 2 lg P steps
- *     pcr-symmetric     parallel cyclic reduction (5.3 ii): lg P steps; pcr: the textbook's form (5.3 i)
- *     cr-pcr            some levels of the first, then the second (5.4 d)
- *     partition         local elimination, then cr or pcr-symmetric on one row a rank (5.4 a) */
+ *     pcr-symmetric     parallel cyclic reduction (5.3 ii): lg P steps; pcr: the textbook's form
+ * (5.3 i) cr-pcr            some levels of the first, then the second (5.4 d) partition local
+ * elimination, then cr or pcr-symmetric on one row a rank (5.4 a) */
 #include "spec/kernel_spec.h"
 
 #include <string.h>
@@ -226,73 +226,100 @@ static const struct field fields[] = {
     /* Formulations (physics 4.2, 4.3) and solvers (5.1 to 5.4). */
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 32, .fallback = "dynamics",
      .doc = "the program; see `mimdsim kernels`"},
-    {.key = "formulation", .kind = FIELD_CHOICE, AT(formulation), .choice = formulations, .fallback = "paper",
-     .idle = idle_without_forward, .doc = "forward dynamics: the paper's constraint system or the direct one"},
-    {.key = "solver", .kind = FIELD_CHOICE, AT(solver), .choice = solvers, .fallback = "pcr-symmetric",
+    {.key = "formulation", .kind = FIELD_CHOICE, AT(formulation), .choice = formulations,
+     .fallback = "paper",
+     .idle = idle_without_forward,
+     .doc = "forward dynamics: the paper's constraint system or the direct one"},
+    {.key = "solver", .kind = FIELD_CHOICE, AT(solver), .choice = solvers,
+     .fallback = "pcr-symmetric",
      .idle = idle_without_chain_solver, .doc = "solver of the block tridiagonal system"},
-    {.key = "part_solver", .kind = FIELD_CHOICE, AT(part_solver), .choice = part_solvers, .fallback = "pcr",
+    {.key = "part_solver", .kind = FIELD_CHOICE, AT(part_solver), .choice = part_solvers,
+     .fallback = "pcr",
      .idle = idle_unless_partition, .doc = "solver of the interface system of solver 'partition'"},
     /* How the numbers are computed: full matrices or (r, p) (physics 1.2), in which precision. */
-    {.key = "operators", .kind = FIELD_CHOICE, AT(operators), .choice = operators, .fallback = "structured",
-     .idle = idle_without_model, .doc = "operators as full 6x6 matrices, as in the paper's code, or as "
+    {.key = "operators", .kind = FIELD_CHOICE, AT(operators), .choice = operators,
+     .fallback = "structured",
+     .idle = idle_without_model,
+     .doc = "operators as full 6x6 matrices, as in the paper's code, or as "
                                         "rotation and offset"},
     {.key = "algebra", .kind = FIELD_CHOICE, AT(algebra), .choice = algebras, .fallback = "auto",
      .idle = idle_without_model,
-     .doc = "six components, or three in the plane of a planar scene; auto: three with structured operators"},
+     .doc = "six components, or three in the plane of a planar scene; auto: three with structured "
+            "operators"},
     /* double, float, or quad (113 bits, in software). */
-    {.key = "precision", .kind = FIELD_CHOICE, AT(precision), .choice = precisions, .fallback = "double",
+    {.key = "precision", .kind = FIELD_CHOICE, AT(precision), .choice = precisions,
+     .fallback = "double",
      .idle = idle_without_model, .doc = "precision of the arithmetic"},
     /* How the work lies on the ranks: blocks (physics 3.3), composites incoming (3.1) or outgoing
      * (3.2). */
-    {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
-     .idle = idle_without_branch_choice, .doc = "distribution of bodies over ranks: equal counts, or equal work"},
+    {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions,
+     .fallback = "block",
+     .idle = idle_without_branch_choice,
+     .doc = "distribution of bodies over ranks: equal counts, or equal work"},
     {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
      .idle = idle_without_scans,
-     .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
+     .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing "
+            "ones"},
     /* Physics 5.4 d: each level halves the rows that go on and costs a step on the way back. */
-    {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
-     .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},
+    {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32,
+     .fallback = "1",
+     .idle = idle_unless_hybrid,
+     .doc = "levels of cyclic reduction before parallel cyclic reduction"},
     /* What is done about rounding errors (physics 8.6). */
-    {.key = "refinement", .kind = FIELD_CHOICE, AT(refinement), .choice = refinement_rules, .fallback = "as-needed",
+    {.key = "refinement", .kind = FIELD_CHOICE, AT(refinement), .choice = refinement_rules,
+     .fallback = "as-needed",
      .idle = idle_without_forward,
      .doc = "whether further refinements are added if the residual requires them"},
-    {.key = "residual", .kind = FIELD_CHOICE, AT(residual), .choice = residuals, .fallback = "working",
+    {.key = "residual", .kind = FIELD_CHOICE, AT(residual), .choice = residuals,
+     .fallback = "working",
      .idle = idle_without_chain_solver,
-     .doc = "precision of forces and residual of a refined solution: that of the arithmetic, or twice its digits"},
+     .doc = "precision of forces and residual of a refined solution: that of the arithmetic, or "
+            "twice its digits"},
     /* Fixed numbers of corrections; more are added as needed. */
-    {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100, .fallback = "0",
-     .idle = idle_without_forward, .doc = "inner refinements: corrections of the solution by its residual"},
-    {.key = "outer_refinements", .kind = FIELD_INT, AT(outer_refinements), .min = 0, .max = 100, .fallback = "0",
-     .idle = idle_without_forward, .doc = "outer refinements: corrections of the accelerations by inverse dynamics"},
+    {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100,
+     .fallback = "0",
+     .idle = idle_without_forward,
+     .doc = "inner refinements: corrections of the solution by its residual"},
+    {.key = "outer_refinements", .kind = FIELD_INT, AT(outer_refinements), .min = 0, .max = 100,
+     .fallback = "0",
+     .idle = idle_without_forward,
+     .doc = "outer refinements: corrections of the accelerations by inverse dynamics"},
     /* Time integration (physics 9). */
     {.key = "steps", .kind = FIELD_INT, AT(steps), .min = 0, .max = 1 << 30, .fallback = "0",
      .idle = idle_without_model, .doc = "number of time steps, 0: one evaluation"},
-    {.key = "step_size", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(step_size), .min = 1e-18, .max = 1e3,
+    {.key = "step_size", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(step_size), .min = 1e-18,
+     .max = 1e3,
      .fallback = "1 ms", .idle = idle_without_steps, .doc = "length of a time step"},
     /* Orders 1, 2, 4 and 1; the last one also takes stiff springs at any step size. */
-    {.key = "step", .kind = FIELD_CHOICE, AT(step), .choice = step_rules, .fallback = "semi-implicit",
+    {.key = "step", .kind = FIELD_CHOICE, AT(step), .choice = step_rules,
+     .fallback = "semi-implicit",
      .idle = idle_without_steps,
-     .doc = "semi-implicit Euler (order 1), kick-drift-kick (order 2, one evaluation a step), Runge-Kutta 4, or "
-            "linearly implicit in springs and dampers (order 1)"},
+     .doc = "semi-implicit Euler (order 1), kick-drift-kick (order 2, one evaluation a step), "
+            "Runge-Kutta 4, or linearly implicit in springs and dampers (order 1)"},
     /* Message benchmarks only. */
     {.key = "repeat", .kind = FIELD_INT, AT(repeat), .min = 1, .max = 1 << 30, .fallback = "1",
      .idle = idle_with_model, .doc = "benchmarks: repetitions within a run"},
     /* What a benchmark sends, and to whom. */
-    {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0, .max = 1e12,
+    {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0,
+     .max = 1e12,
      .fallback = "0 B", .idle = idle_without_message, .doc = "benchmarks: size of a message"},
     {.key = "distance", .kind = FIELD_INT, AT(distance), .min = 0, .max = 1 << 30, .fallback = "1",
      .idle = idle_unless_shift, .doc = "benchmarks: distance of the partner in ranks"},
     /* Collectives: which algorithm, whose root (docs/collectives.md). */
     {.key = "algorithm", .kind = FIELD_TEXT, AT(algorithm), .capacity = 32, .fallback = "auto",
      .valid = collective_choice_valid, .idle = idle_without_algorithm,
-     .doc = "collectives: an algorithm by name (docs/collectives.md), or by machine.software.collectives and size"},
+     .doc = "collectives: an algorithm by name (docs/collectives.md), or by "
+            "machine.software.collectives and size"},
     {.key = "root", .kind = FIELD_INT, AT(root), .min = -(1 << 30), .max = 1 << 30, .fallback = "0",
      .idle = idle_without_root, .doc = "collectives: root rank; -1: the last"},
-    {.key = "ring_ranks", .kind = FIELD_INT, AT(ring_ranks), .min = 0, .max = 1 << 30, .fallback = "0",
-     .idle = idle_unless_ring, .doc = "ring, random-ring: ranks per ring, 0: one ring of all ranks"},
+    {.key = "ring_ranks", .kind = FIELD_INT, AT(ring_ranks), .min = 0, .max = 1 << 30,
+     .fallback = "0",
+     .idle = idle_unless_ring,
+     .doc = "ring, random-ring: ranks per ring, 0: one ring of all ranks"},
 };
 
 const struct field_table kernel_table = {
     .prefix = "kernel", .doc = "the parallel program", .offset = offsetof(struct run_spec, kernel),
-    .size = sizeof(struct kernel_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+    .size = sizeof(struct kernel_spec), .nfield = (int)(sizeof fields / sizeof *fields),
+    .field = fields,
 };

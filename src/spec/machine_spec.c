@@ -49,17 +49,14 @@ static const struct field fields[] = {
     {.key = "topology.dims", .kind = FIELD_INTS, AT(topology.dims), COUNT(topology.ndim),
      .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
      .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; "
-            "fat-tree: [arity, "
-            "levels]; "
-            "dragonfly: [terminals per router, routers per group, global links per router, "
-            "groups]; others: [routers]"},
+            "fat-tree: [arity, levels]; dragonfly: [terminals per router, routers per group, "
+            "global links per router, groups]; others: [routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH,
      AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
      .idle = machine_idle_without_links,
      .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; "
-            "dragonfly: local, global; "
-            "hypercube: cube, Xpress), 0: network.link.bandwidth"},
+            "dragonfly: local, global; hypercube: cube, Xpress), 0: network.link.bandwidth"},
     {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1,
      .max = 4096,
      .fallback = "1", .idle = machine_idle_with_own_nodes, .doc = "nodes on each router"},
@@ -76,9 +73,7 @@ static const struct field fields[] = {
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
      .idle = machine_idle_unless_hypercube,
      .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 "
-            "dimensions on "
-            "one to the opposite "
-            "router"},
+            "dimensions on one to the opposite router"},
     /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink),
      .min = 0,
@@ -117,8 +112,7 @@ static const struct field fields[] = {
      AT(node.instruction_cycles), .min = 0,
      .max = 1e6, .fallback = "0 cycles",
      .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
-            "node.flop_rate tells "
-            "that several are issued at once"},
+            "node.flop_rate tells that several are issued at once"},
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
      .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},
@@ -250,10 +244,9 @@ static const struct field fields[] = {
      AT(software.segment), COUNT(software.nsegment),
      .capacity = SOFTWARE_MAX_SEGMENTS, .fallback = "[]",
      .doc = "message software by size, in place of short and eager: each segment {from: 8 KiB, "
-            "...} may give "
-            "send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, gap_per_byte, "
-            "protocol (eager, "
-            "rendezvous, synchronous) and rendezvous.latency; what it does not give is software's"},
+            "...} may give send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, "
+            "gap_per_byte, protocol (eager, rendezvous, synchronous) and rendezvous.latency; what "
+            "it does not give is software's"},
     {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server),
      .fallback = "false",
      .doc = "both ends of every message pass one server of the whole machine (TCP loopback)"},
@@ -270,8 +263,7 @@ static const struct field fields[] = {
      .fallback = "",
      .valid = collective_rules_valid, .idle = machine_idle_without_collectives,
      .doc = "algorithms that the message software selects: 'allreduce ring from 64 KiB on 8 ranks; "
-            "...', the last that "
-            "matches counts; else MPICH's choice (docs/collectives.md)"},
+            "...', the last that matches counts; else MPICH's choice (docs/collectives.md)"},
     /* Barriers, one-sided transfers, and the channel between processors of one node. */
     {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
      .fallback = "software", .doc = "barrier by messages or by hardware"},

@@ -165,7 +165,8 @@ static const char *idle_unless_forward(const struct run_spec *r)
  * (1e-30 kg, 1e-12 m) to space structures. */
 static const struct field fields[] = {
     /* Which bodies, and what connects them. */
-    {.key = "generator", .kind = FIELD_CHOICE, AT(generator), .choice = generators, .fallback = "serial-chain",
+    {.key = "generator", .kind = FIELD_CHOICE, AT(generator), .choice = generators,
+     .fallback = "serial-chain",
      .idle = idle_without_model, .doc = "kind of system, or the kind of file that describes it"},
     {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16",
      .idle = idle_unless_any_length, .doc = "number of bodies"},
@@ -173,46 +174,61 @@ static const struct field fields[] = {
     {.key = "joint", .kind = FIELD_CHOICE, AT(joint), .choice = joints, .fallback = "revolute",
      .idle = idle_unless_general, .doc = "joint of every body"},
     /* A floating base adds a joint of six freedoms in front (physics 4.4). */
-    {.key = "base", .kind = FIELD_CHOICE, AT(base), .choice = bases, .fallback = "fixed", .idle = idle_from_vector,
+    {.key = "base", .kind = FIELD_CHOICE, AT(base), .choice = bases, .fallback = "fixed",
+     .idle = idle_from_vector,
      .doc = "what the first body is attached to"},
     /* Uniform: all bodies equal; random: sizes and masses from the seed. */
     {.key = "inertia", .kind = FIELD_CHOICE, AT(inertia), .choice = inertias, .fallback = "uniform",
      .idle = idle_unless_general, .doc = "equal bodies, or seeded random ones"},
     /* Where the joints stand, and how their axes lie. */
-    {.key = "pose", .kind = FIELD_CHOICE, AT(pose), .choice = poses, .fallback = "random", .idle = idle_when_closed,
+    {.key = "pose", .kind = FIELD_CHOICE, AT(pose), .choice = poses, .fallback = "random",
+     .idle = idle_when_closed,
      .doc = "joint positions"},
-    {.key = "axes", .kind = FIELD_CHOICE, AT(axes), .choice = axes, .fallback = "twisted", .idle = idle_in_a_ring,
+    {.key = "axes", .kind = FIELD_CHOICE, AT(axes), .choice = axes, .fallback = "twisted",
+     .idle = idle_in_a_ring,
      .doc = "joint axes: all parallel, or each rotated relative to the previous one"},
     /* Measures of equal rods; random bodies vary about them. */
     {.key = "length", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(length), .min = 1e-12, .max = 1e6,
      .fallback = "1 m", .idle = idle_unless_rods, .doc = "of a link"},
     {.key = "radius", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(radius), .min = 1e-13, .max = 1e6,
      .fallback = "0.05 m", .idle = idle_unless_rods, .doc = "of a link"},
-    {.key = "mass", .kind = FIELD_REAL, .unit = UNIT_MASS, AT(mass), .min = 1e-30, .max = 1e12, .fallback = "1 kg",
+    {.key = "mass", .kind = FIELD_REAL, .unit = UNIT_MASS, AT(mass), .min = 1e-30, .max = 1e12,
+     .fallback = "1 kg",
      .idle = idle_unless_rods, .doc = "of a link"},
     /* For stiff and badly scaled cases (physics 8.3). */
-    {.key = "mass_ratio", .kind = FIELD_REAL, AT(mass_ratio), .min = 1, .max = 1e15, .fallback = "1",
+    {.key = "mass_ratio", .kind = FIELD_REAL, AT(mass_ratio), .min = 1, .max = 1e15,
+     .fallback = "1",
      .idle = idle_unless_random, .doc = "largest over smallest mass of random bodies"},
     /* What acts: gravity enters as an acceleration of the base (physics 1.6). */
-    {.key = "gravity", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION, AT(gravity), .capacity = 3, .at_least = 3,
-     .min = -1e6, .max = 1e6, .fallback = "[0, 0, -9.81] m/s^2", .idle = idle_from_vector, .doc = "in the base frame"},
+    {.key = "gravity", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION, AT(gravity), .capacity = 3,
+     .at_least = 3,
+     .min = -1e6, .max = 1e6, .fallback = "[0, 0, -9.81] m/s^2", .idle = idle_from_vector,
+     .doc = "in the base frame"},
     /* A base that is moved from outside (physics 1.6); a floating one moves by itself. */
     {.key = "base_acceleration.angular", .kind = FIELD_REALS, .unit = UNIT_ANGULAR_ACCELERATION,
-     AT(base_acceleration), .capacity = 3, .at_least = 3, .min = -1e9, .max = 1e9, .fallback = "[0, 0, 0] rad/s^2",
+     AT(base_acceleration), .capacity = 3, .at_least = 3, .min = -1e9, .max = 1e9,
+     .fallback = "[0, 0, 0] rad/s^2",
      .idle = idle_unless_moving, .doc = "of a moving base"},
     {.key = "base_acceleration.linear", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION,
-     .offset = offsetof(struct model_spec, base_acceleration) + 3 * sizeof(double), .capacity = 3, .at_least = 3,
-     .min = -1e9, .max = 1e9, .fallback = "[0, 0, 0] m/s^2", .idle = idle_unless_moving, .doc = "of a moving base"},
+     .offset = offsetof(struct model_spec, base_acceleration) + 3 * sizeof(double), .capacity = 3,
+     .at_least = 3,
+     .min = -1e9, .max = 1e9, .fallback = "[0, 0, 0] m/s^2", .idle = idle_unless_moving,
+     .doc = "of a moving base"},
     /* State and loads: scales of seeded random numbers. */
     {.key = "rate", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(rate), .min = 0, .max = 1e9,
-     .fallback = "1 rad/s", .idle = idle_from_vector, .doc = "scale of the seeded random joint rates"},
+     .fallback = "1 rad/s", .idle = idle_from_vector,
+     .doc = "scale of the seeded random joint rates"},
     {.key = "torque", .kind = FIELD_REAL, .unit = UNIT_TORQUE, AT(torque), .min = 0, .max = 1e15,
-     .fallback = "1 N m", .idle = idle_unless_forward, .doc = "scale of the seeded random joint forces"},
+     .fallback = "1 N m", .idle = idle_unless_forward,
+     .doc = "scale of the seeded random joint forces"},
     /* One wrench a body, subtracted from its load (physics 1.6). */
-    {.key = "external_force", .kind = FIELD_REAL, .unit = UNIT_FORCE, AT(external_force), .min = 0, .max = 1e15,
-     .fallback = "0 N", .idle = idle_from_vector, .doc = "scale of seeded random wrenches on every body, 0: none"},
+    {.key = "external_force", .kind = FIELD_REAL, .unit = UNIT_FORCE, AT(external_force), .min = 0,
+     .max = 1e15,
+     .fallback = "0 N", .idle = idle_from_vector,
+     .doc = "scale of seeded random wrenches on every body, 0: none"},
     /* Springs and dampers, also for linearly implicit steps (physics 9.0). */
-    {.key = "stiffness", .kind = FIELD_REAL, .unit = UNIT_STIFFNESS, AT(stiffness), .min = 0, .max = 1e15,
+    {.key = "stiffness", .kind = FIELD_REAL, .unit = UNIT_STIFFNESS, AT(stiffness), .min = 0,
+     .max = 1e15,
      .fallback = "0 N m/rad", .idle = idle_in_a_loop,
      .doc = "stiffness of joint springs towards the first pose (the same number in N/m where "
      "a joint slides), 0: none"},
@@ -221,9 +237,11 @@ static const struct field fields[] = {
      .doc = "damping of the joints (the same number in N s/m where a joint slides), 0: none"},
     /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8.
      * With the projection of physics 7.5 it would not be needed. */
-    {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation), .min = 0, .max = 1e9,
+    {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation),
+     .min = 0, .max = 1e9,
      .fallback = "0 rad/s", .idle = idle_unless_closed,
-     .doc = "closed loops: alpha = beta of Baumgarte's method, at most about one over the step size; 0: none"},
+     .doc = "closed loops: alpha = beta of Baumgarte's method, at most about one over the step "
+            "size; 0: none"},
     /* Comb and dendrimer. */
     {.key = "branch", .kind = FIELD_INT, AT(branch), .min = 1, .max = 1 << 20, .fallback = "2",
      .idle = idle_unless_branching, .doc = "comb, dendrimer: number of children per body"},
@@ -231,12 +249,14 @@ static const struct field fields[] = {
     {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .idle = idle_from_vector,
      .doc = "seed of everything random in the model"},
     /* Models from files. */
-    {.key = "path", .kind = FIELD_TEXT, AT(path), .capacity = 256, .fallback = "", .idle = idle_unless_file,
+    {.key = "path", .kind = FIELD_TEXT, AT(path), .capacity = 256, .fallback = "",
+     .idle = idle_unless_file,
      .doc = "URDF or vector file, relative to the scenario"},
 };
 
 /* The prefix and the place of the struct in run_spec; everything else is the rows'. */
 const struct field_table model_table = {
     .prefix = "model", .doc = "the multibody scene", .offset = offsetof(struct run_spec, model),
-    .size = sizeof(struct model_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+    .size = sizeof(struct model_spec), .nfield = (int)(sizeof fields / sizeof *fields),
+    .field = fields,
 };

@@ -1,4 +1,5 @@
-/* model_spec.h - which multibody system, in which pose, with which loads: the scene that a kernel works on. */
+/* model_spec.h - which multibody system, in which pose, with which loads: the scene that a kernel
+ * works on. */
 #ifndef SPEC_MODEL_SPEC_H
 #define SPEC_MODEL_SPEC_H
 
@@ -8,8 +9,16 @@
 #include "spec/joint_list.h"
 
 enum model_generator {
-    MODEL_SERIAL_CHAIN, MODEL_COMB, MODEL_STAR, MODEL_RANDOM_TREE, MODEL_DENDRIMER, MODEL_RING, MODEL_FOUR_BAR,
-    MODEL_POLYMER, MODEL_URDF, MODEL_VECTOR
+    MODEL_SERIAL_CHAIN,
+    MODEL_COMB,
+    MODEL_STAR,
+    MODEL_RANDOM_TREE,
+    MODEL_DENDRIMER,
+    MODEL_RING,
+    MODEL_FOUR_BAR,
+    MODEL_POLYMER,
+    MODEL_URDF,
+    MODEL_VECTOR
 };
 enum model_joint {
 #define CONSTANT(constant, word, stem, coordinates, plane, traits) constant,
@@ -39,7 +48,8 @@ struct model_spec {
     double rate;              /* scale of the random joint rates [rad/s] */
     double torque;            /* scale of the random joint forces [N m] */
     double external_force;    /* scale of random external wrenches on every body [N]; 0: none */
-    double stiffness, damping;/* joint springs to the initial pose [N m/rad], [N m s/rad]; 0: none */
+    /* joint springs to the initial pose [N m/rad], [N m s/rad]; 0: none */
+    double stiffness, damping;
     double stabilisation;     /* loops: alpha = beta of Baumgarte's method [1/s]; 0: none */
     int branch;               /* comb, dendrimer: children per node */
     uint64_t seed;

@@ -1,7 +1,8 @@
-/* run_label.h - what a run is called in titles, legends and tables: a name that was given to it, or its machine
- * with what was changed of it.
+/* run_label.h - what a run is called in titles, legends and tables: a name that was given to it, or
+ * its machine with what was changed of it.
  *
- * A machine on which something was changed is another machine. Its name says so: "t3e-300, hop_latency 60 us". */
+ * A machine on which something was changed is another machine. Its name says so: "t3e-300,
+ * hop_latency 60 us". */
 #ifndef SPEC_RUN_LABEL_H
 #define SPEC_RUN_LABEL_H
 
@@ -10,23 +11,26 @@
 
 enum { LABEL_KEY_LENGTH = 16 }; /* digits of a machine's fingerprint */
 
-/* field_short_key: the shortest end of `key` (a row of `t`) that no other row's key ends in and that says something by
- * itself: "hop_latency" of "network.hop_latency", but "placement.kind". A part of `key`. */
+/* field_short_key: the shortest end of `key` (a row of `t`) that no other row's key ends in and
+ * that says something by itself: "hop_latency" of "network.hop_latency", but "placement.kind". A
+ * part of `key`. */
 const char *field_short_key(const struct field_table *t, const char *key);
 
-/* run_label_changed: `name`, and what differs, appended: "t3e-300, hop_latency 60 us, topology.dims 8x4x4".
+/* run_label_changed: `name`, and what differs, appended: "t3e-300, hop_latency 60 us, topology.dims
+ * 8x4x4".
  *
- *   changes  in  JSON object of keys without "machine." and values (run_spec.machine_changes); NULL or not an object:
- *                none. Of more than three changes the others are counted, with a fingerprint of all of them. */
+ *   changes  in  JSON object of keys without "machine." and values (run_spec.machine_changes); NULL
+ * or not an object: none. Of more than three changes the others are counted, with a fingerprint of
+ * all of them. */
 void run_label_changed(const char *name, const char *changes, struct text *out);
 
-/* run_label: what `run` is called, appended: `called`, as the plan made it; else `label`; else its machine with what
- * was changed. */
+/* run_label: what `run` is called, appended: `called`, as the plan made it; else `label`; else its
+ * machine with what was changed. */
 void run_label(const struct run_spec *run, struct text *out);
 
-/* machine_fingerprint: LABEL_KEY_LENGTH digits of the SHA-256 of the machine's settings in `config` (run_spec's
- * config_text), without the level of the network and its tolerance, which ask something of a machine: runs that have
- * the same one ran on the same machine. */
+/* machine_fingerprint: LABEL_KEY_LENGTH digits of the SHA-256 of the machine's settings in `config`
+ * (run_spec's config_text), without the level of the network and its tolerance, which ask something
+ * of a machine: runs that have the same one ran on the same machine. */
 void machine_fingerprint(const char *config, char hex[LABEL_KEY_LENGTH + 1]);
 
 #endif

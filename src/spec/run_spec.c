@@ -66,14 +66,16 @@ static const struct field fields[] = {
      .capacity = 96,
      .fallback = "",
      .label = true,
-     .doc = "what a run is called in legends and tables (also `name`); default: the machine with what was changed"},
+     .doc = "what a run is called in legends and tables (also `name`); default: the machine with "
+            "what was changed"},
     {.key = "ranks",
      .kind = FIELD_INT,
      AT(nrank),
      .min = 1,
      .max = 1 << 24,
      .fallback = "1",
-     .doc = "P, number of ranks, each on a virtual processor; in a scenario also 'n': one per body"},
+     .doc = "P, number of ranks, each on a virtual processor; in a scenario also 'n': one per "
+            "body"},
     {.key = "seed",
      .kind = FIELD_SEED,
      AT(seed),
@@ -86,7 +88,8 @@ static const struct field fields[] = {
      .choice = baseline_rules,
      .fallback = "all",
      .idle = idle_without_choice,
-     .doc = "serial codes to compare the run with: all, or only those that can be the fastest by operation count"},
+     .doc = "serial codes to compare the run with: all, or only those that can be the fastest by "
+            "operation count"},
     /* Records cost memory and rows of the database: off unless asked for. */
     {.key = "record.links",
      .kind = FIELD_BOOL,

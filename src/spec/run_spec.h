@@ -1,5 +1,5 @@
-/* run_spec.h - everything that one run depends on, resolved; nothing writes it after the plan. How it is executed is
- * said beside it, by struct run_order. */
+/* run_spec.h - everything that one run depends on, resolved; nothing writes it after the plan. How
+ * it is executed is said beside it, by struct run_order. */
 #ifndef SPEC_RUN_SPEC_H
 #define SPEC_RUN_SPEC_H
 
@@ -18,15 +18,31 @@ enum baseline_rule { BASELINES_ALL, BASELINES_NEEDED };
 struct record_spec {
     bool spans;  /* who did what from when to when (timeline) */
     bool links;  /* per-link busy time and queueing */
-    bool path;   /* what binds: the critical path (mimdsim why). No setting: whoever asks for it says so */
+    /* what binds: the critical path (mimdsim why). No setting: whoever asks for it says so */
+    bool path;
     enum baseline_rule baselines;
 };
 
-/* What is computed although nothing asks for it (run's --keep-all): to show that leaving it out changes no result. */
-enum keep_bit { KEEP_START_EVENTS = 1, KEEP_SPANS = 2, KEEP_LINKS = 4, KEEP_BASELINE = 8, KEEP_CONTENTION = 16,
-            KEEP_EXTERNAL = 32, KEEP_VELOCITY = 64, KEEP_BASE = 128, KEEP_BIAS = 256,
-            KEEP_FIXED = 512, KEEP_GENERAL = 1024, KEEP_BRANCHES = 2048, KEEP_TURN = 4096,
-            KEEP_SPATIAL = 8192, KEEP_SCENES = 1 << 15, KEEP_ALL = 0xffff };
+/* What is computed although nothing asks for it (run's --keep-all): to show that leaving it out
+ * changes no result. */
+enum keep_bit {
+    KEEP_START_EVENTS = 1,
+    KEEP_SPANS = 2,
+    KEEP_LINKS = 4,
+    KEEP_BASELINE = 8,
+    KEEP_CONTENTION = 16,
+    KEEP_EXTERNAL = 32,
+    KEEP_VELOCITY = 64,
+    KEEP_BASE = 128,
+    KEEP_BIAS = 256,
+    KEEP_FIXED = 512,
+    KEEP_GENERAL = 1024,
+    KEEP_BRANCHES = 2048,
+    KEEP_TURN = 4096,
+    KEEP_SPATIAL = 8192,
+    KEEP_SCENES = 1 << 15,
+    KEEP_ALL = 0xffff
+};
 
 /* How level 'auto-tolerance' was settled: the spec of the run names the level that was taken. */
 struct level_choice {
@@ -42,23 +58,27 @@ struct hosts;
 /* run_order.threads: as many host threads as help, on `cores` processors. */
 enum { RUN_THREADS_AUTO = -1 };
 
-/* How a run is executed, beside what it is: nothing of it is a setting or part of the identity, and none of it changes
- * a result. All zero: as usual. */
+/* How a run is executed, beside what it is: nothing of it is a setting or part of the identity, and
+ * none of it changes a result. All zero: as usual. */
 struct run_order {
     unsigned keep;                   /* KEEP_*: what is computed although nothing asks for it */
-    struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere; borrowed */
+    /* where the run tells how far it is, NULL: nowhere; borrowed */
+    struct run_heartbeat *heartbeat;
     enum program_output output;      /* of people's own programs: their lines */
-    double host_limit;               /* of people's own programs: processor time of a run [s]; 0: PROGRAM_HOST_LIMIT */
+    /* of people's own programs: processor time of a run [s]; 0: PROGRAM_HOST_LIMIT */
+    double host_limit;
     struct level_choice level_choice;
     int threads;                     /* host threads of the one run, RUN_THREADS_AUTO, or 0: one */
     int cores;                       /* processors that it may use; 0: all that there are */
-    const struct hosts *hosts;       /* processes that share the run, NULL: this one alone; borrowed */
+    /* processes that share the run, NULL: this one alone; borrowed */
+    const struct hosts *hosts;
     int job_run;                     /* its number among those of the processes */
 };
 
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
-    char label[96];          /* name that a person gave to it, "": none. For people, no part of the identity */
+    char label[96]; /* name that a person gave to it, "": none. For people, no part of the identity
+                     */
     struct machine_spec machine;
     struct model_spec model;
     struct kernel_spec kernel;
@@ -67,24 +87,31 @@ struct run_spec {
     int nrank;               /* P */
     uint64_t seed;           /* of noise; the model has its own */
     int rep;                 /* repetition number, 0-based */
-    char model_file[65];     /* SHA-256 of the file at model.path, which is part of the identity; "": no file */
-    char config_hash[65];    /* SHA-256 of the settings above, but rep, that differ from their defaults: identity.h */
-    const char *config_text; /* all settings as "key = value" lines, borrowed from the plan's arena */
-    const char *machine_changes; /* JSON object of the machine's settings that are not those of the shipped machine of
-                                    its name, "{}": none; NULL: none is shipped, or nobody looked. Borrowed */
-    const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */
-    const char *called;      /* in tables and figures (run_label.h), NULL: as run_label says. Borrowed */
-    const char *refused;     /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
+    char model_file[65]; /* SHA-256 of the file at model.path, which is part of the identity; "": no
+                            file */
+    /* SHA-256 of the settings above, but rep, that differ from their defaults: identity.h */
+    char config_hash[65];
+    const char
+        *config_text; /* all settings as "key = value" lines, borrowed from the plan's arena */
+    const char *machine_changes; /* JSON object of the machine's settings that are not those of the
+                                    shipped machine of its name, "{}": none; NULL: none is shipped,
+                                    or nobody looked. Borrowed */
+    const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of
+                                    the identity */
+    /* in tables and figures (run_label.h), NULL: as run_label says. Borrowed */
+    const char *called;
+    /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
+    const char *refused;
     int refused_kind;        /* err_kind of that */
-    unsigned keep;           /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */
+    unsigned keep; /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */
 };
 
-/* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes. Where not, all
- * repetitions are alike. */
+/* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes.
+ * Where not, all repetitions are alike. */
 bool run_spec_is_random(const struct run_spec *r);
 
-/* run_spec_seed: the seed of a run's random streams: a hash of its seed and its repetition, so that no repetition of
- * one seed is a run of another. */
+/* run_spec_seed: the seed of a run's random streams: a hash of its seed and its repetition, so that
+ * no repetition of one seed is a run of another. */
 uint64_t run_spec_seed(const struct run_spec *r);
 
 #endif

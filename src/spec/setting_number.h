@@ -1,4 +1,5 @@
-/* setting_number.h - the value of a setting as a number in base units, so that it can be sorted, drawn and fitted. */
+/* setting_number.h - the value of a setting as a number in base units, so that it can be sorted,
+ * drawn and fitted. */
 #ifndef SPEC_SETTING_NUMBER_H
 #define SPEC_SETTING_NUMBER_H
 
@@ -11,9 +12,9 @@
  *   number  out  in SI base units: "60 us" is 6e-5
  *   unit    out  what kind of quantity it is; also of settings whose value is no number
  *
- *   Returns false for words, lists, "unlimited", and texts that are no number. What a person's own program declares
- *   (program.NAME) has no unit of its own: a plain number is one, and so is a number with a unit that
- *   only one kind of quantity has. */
+ *   Returns false for words, lists, "unlimited", and texts that are no number. What a person's own
+ * program declares (program.NAME) has no unit of its own: a plain number is one, and so is a number
+ * with a unit that only one kind of quantity has. */
 bool setting_number(const char *key, const char *value, double *number, enum unit *unit);
 
 #endif

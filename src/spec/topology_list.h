@@ -1,32 +1,35 @@
-/* topology_list.h - the families of topologies, one line each: all that rooms above need to know of one.
+/* topology_list.h - the families of topologies, one line each: all that rooms above need to know of
+ * one.
  *
- * A new family is a line here and a file topology_WORD.c in room machine that defines `topology_STEM`. Columns of X:
- * constant, word in files, stem, how many numbers topology.dims has (0: any), number of routers of `t` (a struct
- * topology_spec, counted without overflow), traits. */
+ * A new family is a line here and a file topology_WORD.c in room machine that defines
+ * `topology_STEM`. Columns of X: constant, word in files, stem, how many numbers topology.dims has
+ * (0: any), number of routers of `t` (a struct topology_spec, counted without overflow), traits. */
 #ifndef SPEC_TOPOLOGY_LIST_H
 #define SPEC_TOPOLOGY_LIST_H
 
-#define TOPOLOGY_LIST(X)                                                                                               \
-    /* every node has one port; nothing shared but injection and ejection */                                           \
-    X(TOPOLOGY_CROSSBAR, "crossbar", crossbar, 1, t->dims[0], TOPOLOGY_NO_LINKS)                                       \
-    /* k-ary n-cube of mixed radix, dimension-order routes */                                                          \
-    X(TOPOLOGY_TORUS, "torus", torus, 0, product(t->dims, t->ndim), TOPOLOGY_GRID | TOPOLOGY_RINGS)                    \
-    /* the same without wrap links */                                                                                  \
-    X(TOPOLOGY_MESH, "mesh", mesh, 0, product(t->dims, t->ndim), TOPOLOGY_GRID)                                        \
-    /* e-cube routes; `nodes_per_router` for bristled ones; dims: log2(routers) */                                     \
-    X(TOPOLOGY_HYPERCUBE, "hypercube", hypercube, 1, power(2, t->dims[0]), TOPOLOGY_CUBE)                              \
-    /* one shared resource */                                                                                          \
-    X(TOPOLOGY_BUS, "bus", bus, 1, t->dims[0], TOPOLOGY_NO_LINKS | TOPOLOGY_SHARED)                                    \
-    /* a link between every two routers */                                                                             \
-    X(TOPOLOGY_FULL_MESH, "full-mesh", full_mesh, 1, t->dims[0], 0)                                                    \
-    /* k-ary n-tree; dims: arity, levels */                                                                            \
-    X(TOPOLOGY_FAT_TREE, "fat-tree", fat_tree, 2, power(t->dims[0], t->dims[1]),                                       \
-      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                                           \
-    /* groups of routers, all-to-all inside and between groups; dims: terminals a router, routers a group, global      \
-     * links a router, groups */                                                                                       \
-    X(TOPOLOGY_DRAGONFLY, "dragonfly", dragonfly, 4, size_count(size_count(t->dims[0], t->dims[1]), t->dims[3]),       \
-      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                                           \
-    /* routers and links given in the file */                                                                          \
+#define TOPOLOGY_LIST(X)                                                                           \
+    /* every node has one port; nothing shared but injection and ejection */                       \
+    X(TOPOLOGY_CROSSBAR, "crossbar", crossbar, 1, t->dims[0], TOPOLOGY_NO_LINKS)                   \
+    /* k-ary n-cube of mixed radix, dimension-order routes */                                      \
+    X(TOPOLOGY_TORUS, "torus", torus, 0, product(t->dims, t->ndim),                                \
+      TOPOLOGY_GRID | TOPOLOGY_RINGS)                                                              \
+    /* the same without wrap links */                                                              \
+    X(TOPOLOGY_MESH, "mesh", mesh, 0, product(t->dims, t->ndim), TOPOLOGY_GRID)                    \
+    /* e-cube routes; `nodes_per_router` for bristled ones; dims: log2(routers) */                 \
+    X(TOPOLOGY_HYPERCUBE, "hypercube", hypercube, 1, power(2, t->dims[0]), TOPOLOGY_CUBE)          \
+    /* one shared resource */                                                                      \
+    X(TOPOLOGY_BUS, "bus", bus, 1, t->dims[0], TOPOLOGY_NO_LINKS | TOPOLOGY_SHARED)                \
+    /* a link between every two routers */                                                         \
+    X(TOPOLOGY_FULL_MESH, "full-mesh", full_mesh, 1, t->dims[0], 0)                                \
+    /* k-ary n-tree; dims: arity, levels */                                                        \
+    X(TOPOLOGY_FAT_TREE, "fat-tree", fat_tree, 2, power(t->dims[0], t->dims[1]),                   \
+      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                       \
+    /* groups of routers, all-to-all inside and between groups; dims: terminals a router, routers  \
+     * a group, global links a router, groups */                                                   \
+    X(TOPOLOGY_DRAGONFLY, "dragonfly", dragonfly, 4,                                               \
+      size_count(size_count(t->dims[0], t->dims[1]), t->dims[3]),                                  \
+      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                       \
+    /* routers and links given in the file */                                                      \
     X(TOPOLOGY_GRAPH, "graph", graph, 1, t->dims[0], TOPOLOGY_LISTED)
 
 /* What settings can act on a family. */

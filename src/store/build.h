@@ -4,7 +4,8 @@
 
 struct build {
     const char *version;    /* of the package */
-    const char *git;        /* commit, "-dirty" when files differ; without git "src-" and a hash of the sources */
+    const char
+        *git; /* commit, "-dirty" when files differ; without git "src-" and a hash of the sources */
     const char *compiler;
     const char *flags;      /* of the C compiler */
 };

@@ -11,27 +11,29 @@
 #include "base/check.h"
 #include "base/err.h"
 
-/* X(name, sql): the statements that store_put and store_has use again and again. Those without a text insert a row of a
- * table that is made of columns (rows.h). */
-#define STORE_STATEMENTS(X)                                                                                            \
-    X(RUN_FIND, "SELECT id, status FROM run WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")                        \
-    X(RUN_CALL, "UPDATE run SET label = ?4 WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")                         \
-    X(RUN_DELETE, "DELETE FROM run WHERE id = ?1")                                                                     \
-    X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
-    X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
-    X(SETTING_ADD, "INSERT INTO setting (key, value, number, unit) VALUES (?1, ?2, ?3, ?4)")                           \
-    X(SETTING_FIND, "SELECT id FROM setting WHERE key = ?1 AND value = ?2")                                            \
-    X(RUN_SETTING, "INSERT INTO run_setting VALUES (?1, ?2)")                                                          \
-    X(BEGIN, "BEGIN IMMEDIATE")                                                                                        \
-    X(COMMIT, "COMMIT")                                                                                                \
-    X(PROGRAM_LINE, "INSERT INTO program_line VALUES (?1, ?2, ?3, ?4, ?5)")                                            \
-    X(RUN_INSERT, NULL)                                                                                                \
-    X(STAGE, NULL)                                                                                                     \
-    X(RANK_TIMES, "INSERT INTO rank_times VALUES (?1, ?2)")                                                            \
-    X(BASELINE, NULL)                                                                                                  \
-    X(ERROR_CHECK, NULL)                                                                                               \
-    X(OMISSION, NULL)                                                                                                  \
-    X(LINK_LOAD, NULL)                                                                                                 \
+/* X(name, sql): the statements that store_put and store_has use again and again. Those without a
+ * text insert a row of a table that is made of columns (rows.h). */
+#define STORE_STATEMENTS(X)                                                                        \
+    X(RUN_FIND, "SELECT id, status FROM run WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")    \
+    X(RUN_CALL, "UPDATE run SET label = ?4 WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")     \
+    X(RUN_DELETE, "DELETE FROM run WHERE id = ?1")                                                 \
+    X(BUILD_ADD,                                                                                   \
+      "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")       \
+    X(BUILD_FIND,                                                                                  \
+      "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")     \
+    X(SETTING_ADD, "INSERT INTO setting (key, value, number, unit) VALUES (?1, ?2, ?3, ?4)")       \
+    X(SETTING_FIND, "SELECT id FROM setting WHERE key = ?1 AND value = ?2")                        \
+    X(RUN_SETTING, "INSERT INTO run_setting VALUES (?1, ?2)")                                      \
+    X(BEGIN, "BEGIN IMMEDIATE")                                                                    \
+    X(COMMIT, "COMMIT")                                                                            \
+    X(PROGRAM_LINE, "INSERT INTO program_line VALUES (?1, ?2, ?3, ?4, ?5)")                        \
+    X(RUN_INSERT, NULL)                                                                            \
+    X(STAGE, NULL)                                                                                 \
+    X(RANK_TIMES, "INSERT INTO rank_times VALUES (?1, ?2)")                                        \
+    X(BASELINE, NULL)                                                                              \
+    X(ERROR_CHECK, NULL)                                                                           \
+    X(OMISSION, NULL)                                                                              \
+    X(LINK_LOAD, NULL)                                                                             \
     X(SPAN, NULL)
 
 enum statement {
@@ -43,13 +45,14 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 7,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
-    STORE_OLDEST = 4,               /* the oldest version that is upgraded */
-    STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for while nobody writes */
-    STORE_RANK_ROWS = 256,          /* more ranks: table rank_times stays empty */
-    STORE_LINK_ROWS = 16384,        /* link loads kept of one run */
-    STORE_SPAN_ROWS = 20000,        /* a longer timeline is a file */
-    STORE_LINE_ROWS = 1000          /* lines of output kept of one run */
+    STORE_VERSION =
+        7, /* of schema.sql, in user_version; to be raised, too, when a default changes */
+    STORE_OLDEST = 4,        /* the oldest version that is upgraded */
+    STORE_BUSY_MS = 2000,    /* how long another program's lock is waited for while nobody writes */
+    STORE_RANK_ROWS = 256,   /* more ranks: table rank_times stays empty */
+    STORE_LINK_ROWS = 16384, /* link loads kept of one run */
+    STORE_SPAN_ROWS = 20000, /* a longer timeline is a file */
+    STORE_LINE_ROWS = 1000   /* lines of output kept of one run */
 };
 
 struct store {
@@ -60,8 +63,10 @@ struct store {
     bool fresh;                               /* its file was made by this store_open */
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */
-    int64_t busy_change, busy_since_ms;       /* when others wrote last, and since when nobody has (guard.c) */
-    int64_t build_id;                         /* row of this program in table build, 0: not looked up yet */
+    /* when others wrote last, and since when nobody has (guard.c) */
+    int64_t busy_change, busy_since_ms;
+    /* row of this program in table build, 0: not looked up yet */
+    int64_t build_id;
     sqlite3_stmt *statement[STATEMENT_COUNT]; /* owned, NULL until used */
 };
 
@@ -71,8 +76,8 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
 /* store_step: run a statement that returns no row, and reset it. */
 bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e);
 
-/* store_bound: what binding a parameter has returned. One that there was no memory for would be NULL in a row; like any
- * refused memory (memory.h), it ends the process. */
+/* store_bound: what binding a parameter has returned. One that there was no memory for would be
+ * NULL in a row; like any refused memory (memory.h), it ends the process. */
 static inline void store_bound(int code)
 {
     if (code == SQLITE_NOMEM) check_memory(0);
@@ -87,14 +92,16 @@ static inline const char *store_cell(sqlite3_stmt *q, int column)
     return text != NULL ? text : "";
 }
 
-/* store_next: the next row of `q`: *row tells whether there is one. Returns false with the error set when the rows end
- * for any other reason than that there are no more. */
+/* store_next: the next row of `q`: *row tells whether there is one. Returns false with the error
+ * set when the rows end for any other reason than that there are no more. */
 bool store_next(struct store *s, sqlite3_stmt *q, bool *row, struct err *e);
 
-/* store_failed: set *e from the database's last error: what went wrong, in which file. Returns false. */
+/* store_failed: set *e from the database's last error: what went wrong, in which file. Returns
+ * false. */
 bool store_failed(struct store *s, struct err *e);
 
-/* store_number: the integer that `sql` (a pragma or a count) returns. Returns false with the error set. */
+/* store_number: the integer that `sql` (a pragma or a count) returns. Returns false with the error
+ * set. */
 bool store_number(struct store *s, const char *sql, int64_t *out, struct err *e);
 
 /* store_exec: run SQL text that returns nothing of interest. */

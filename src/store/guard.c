@@ -106,8 +106,9 @@ static int wait_for_lock(void *context, int tries)
         s->busy_since_ms = now;
     }
     if (now - s->busy_since_ms >= STORE_BUSY_MS) return 0;
-    /* The lock of a run's transaction is held for less than a millisecond, that of a merge for longer.
-     * Short at first; later with some disorder, so that waiters do not come back together. */
+    /* The lock of a run's transaction is held for less than a millisecond, that of a merge for
+     * longer. Short at first; later with some disorder, so that waiters do not come back
+     * together. */
     const long ms = tries < 8 ? 1 << tries / 2 : 8 + (now + (int64_t)(uintptr_t)s / 64) % 24;
     nanosleep(&(struct timespec){0, ms * 1000000}, NULL);
     return 1;
@@ -247,8 +248,8 @@ bool guard_schema(struct store *s, const char *schema, const char *path, struct 
 
 /* --- the rows -------------------------------------------------------------------------------- */
 
-/* SQLite's own check, of which one finding is enough. It reads all pages once, as a report does; the
- * full check of indices would sort them. A row that passes has what its table promises, so that
+/* SQLite's own check, of which one finding is enough. It reads all pages once, as a report does;
+ * the full check of indices would sort them. A row that passes has what its table promises, so that
  * nobody who reads it has to ask whether a name is there. */
 bool guard_rows(struct store *s, struct err *e)
 {

@@ -17,7 +17,8 @@ extern const size_t schema_image_bytes;
  * journal. Returns false with errno set. */
 bool image_write(int file, bool wal);
 
-/* image_load: the same into the empty database `db` in memory. Returns false with db's error set. */
+/* image_load: the same into the empty database `db` in memory. Returns false with db's error
+ * set. */
 bool image_load(sqlite3 *db);
 
 #endif

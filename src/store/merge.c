@@ -19,8 +19,7 @@
 static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability",
                                           "omission"};
 
-/* --- the other database
- * ------------------------------------------------------------------------------------------ */
+/* --- the other database ----------------------------------------------------------------------- */
 
 /* By device and inode: two paths may name one file. */
 static bool same_file(const char *a, const char *b)
@@ -76,9 +75,8 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
     sqlite3_stmt *q = NULL;
     bool ok = sqlite3_prepare_v2(
                   s->db,
-                  "SELECT m.name, o.type FROM main.sqlite_schema m"
-                  " LEFT JOIN other.sqlite_schema o USING (name)"
-                  " WHERE m.type = 'table' AND (o.type IS NULL OR o.type <> 'table')",
+                  "SELECT m.name, o.type FROM main.sqlite_schema m LEFT JOIN other.sqlite_schema o "
+                  "USING (name) WHERE m.type = 'table' AND (o.type IS NULL OR o.type <> 'table')",
                   -1, &q, NULL) == SQLITE_OK;
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
         const bool absent = sqlite3_column_type(q, 1) == SQLITE_NULL;
@@ -92,18 +90,17 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
 
 /* ---- which runs ---- */
 
-/* Two programs that disagree about one run: whoever is right, a merge must not choose in silence.
- */
+/* Two programs that disagree about one run: whoever is right, a merge must not choose in
+ * silence. */
 static bool check_digests(struct store *s, const char *from, struct err *e)
 {
     /* Only runs that ended well have a digest that means something; both builds are told. */
     static const char sql[] =
         "SELECT h.config_hash, h.seed, h.rep, h.digest, o.digest, hb.version || ' ' || hb.git || ' "
-        "' || hb.compiler,"
-        " ob.version || ' ' || ob.git || ' ' || ob.compiler FROM main.run h"
-        " JOIN other.run o USING (config_hash, seed, rep)"
-        " JOIN main.build hb ON hb.id = h.build_id JOIN other.build ob ON ob.id = o.build_id"
-        " WHERE h.status = 'ok' AND o.status = 'ok' AND h.digest <> o.digest ORDER BY h.id LIMIT 1";
+        "' || hb.compiler, ob.version || ' ' || ob.git || ' ' || ob.compiler FROM main.run h JOIN "
+        "other.run o USING (config_hash, seed, rep) JOIN main.build hb ON hb.id = h.build_id JOIN "
+        "other.build ob ON ob.id = o.build_id WHERE h.status = 'ok' AND o.status = 'ok' AND "
+        "h.digest <> o.digest ORDER BY h.id LIMIT 1";
     sqlite3_stmt *q = NULL;
     bool ok = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK;
     const int code = ok ? sqlite3_step(q) : SQLITE_ERROR;
@@ -113,8 +110,7 @@ static bool check_digests(struct store *s, const char *from, struct err *e)
         for (int i = 0; i < 7; i++) text[i] = store_cell(q, i);
         ok = err_set(e, ERR_DATA,
                      "run %.12s, seed %s, repetition %s has digest %s in %s (build %s) and %s in "
-                     "%s (build %s);"
-                     " one of them is wrong: run it again with --force",
+                     "%s (build %s); one of them is wrong: run it again with --force",
                      text[0], text[1], text[2], text[3], s->path, text[5], text[4], from, text[6]);
     } else if (code != SQLITE_DONE) {
         ok = store_failed(s, e);
@@ -135,9 +131,11 @@ static bool choose_runs(struct store *s, struct store_merged *done, struct err *
                " WHERE h.id IS NULL OR (h.status <> 'ok' AND o.status = 'ok')",
                e) &&
            store_number(s, "SELECT count(*) FROM merge_run WHERE here IS NULL", &done->added, e) &&
-           store_number(s, "SELECT count(*) FROM merge_run WHERE here IS NOT NULL", &done->replaced, e) &&
-           store_number(s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)",
-                  &done->present, e);
+           store_number(s, "SELECT count(*) FROM merge_run WHERE here IS NOT NULL", &done->replaced,
+                        e) &&
+           store_number(
+               s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)",
+               &done->present, e);
 }
 
 /* ---- rows ---- */
@@ -148,8 +146,7 @@ static const char *translation(const char *column)
     if (strcmp(column, "run_id") == 0) return "m.new";
     if (strcmp(column, "build_id") == 0)
         return "(SELECT h.id FROM main.build h JOIN other.build o USING (version, git, compiler, "
-               "flags)"
-               " WHERE o.id = t.build_id)";
+               "flags) WHERE o.id = t.build_id)";
     if (strcmp(column, "setting_id") == 0)
         return "(SELECT h.id FROM main.setting h JOIN other.setting o USING (key, value) WHERE "
                "o.id = t.setting_id)";
@@ -175,8 +172,8 @@ static bool list_columns(struct store *s, const char *table, struct text *to, st
     return (sqlite3_finalize(q) == SQLITE_OK && ok) || store_failed(s, e);
 }
 
-/* INSERT the rows of other.`table` as t that `which` (the rest of the query, "" for all) chooses.
- */
+/* INSERT the rows of other.`table` as t that `which` (the rest of the query, "" for all)
+ * chooses. */
 static bool take_rows(struct store *s, const char *insert, const char *table, const char *which,
                       struct err *e)
 {

@@ -1,6 +1,8 @@
-/* merge.h - the runs of one database put into another one: campaigns that several hosts made, joined.
+/* merge.h - the runs of one database put into another one: campaigns that several hosts made,
+ * joined.
  *
- * A run is identified by (config_hash, seed, rep), so merging the same database again changes nothing. */
+ * A run is identified by (config_hash, seed, rep), so merging the same database again changes
+ * nothing. */
 #ifndef STORE_MERGE_H
 #define STORE_MERGE_H
 
@@ -11,11 +13,12 @@ struct store_merged {
     int64_t added;    /* runs that were not there */
     int64_t replaced; /* runs that had not ended ok, and did in the other database */
     int64_t present;  /* runs that stay as they were */
-    int64_t studies;  /* rows of studies that were not there: checks, ladders, stability, omissions */
+    /* rows of studies that were not there: checks, ladders, stability, omissions */
+    int64_t studies;
 };
 
-/* store_merge: put the runs of the database `from`, with all that belongs to them and the build that
- * made each, into `s`, and the rows of studies that are no judgments of all runs together.
+/* store_merge: put the runs of the database `from`, with all that belongs to them and the build
+ * that made each, into `s`, and the rows of studies that are no judgments of all runs together.
  *
  *   s     in   open for writing
  *   from  in   path of a database of this version

@@ -1,4 +1,5 @@
-/* rank_times.h - where the time of single ranks went, as one text a run; view rank_stage shows its rows.
+/* rank_times.h - where the time of single ranks went, as one text a run; view rank_stage shows its
+ * rows.
  *
  * The text is JSON, so that any program with SQLite reads the view, without functions of ours. */
 #ifndef STORE_RANK_TIMES_H
@@ -16,7 +17,8 @@ enum { RANK_ENTRY_KEYS = 2 };
 void rank_times_add(const struct run_result *r, struct text *t);
 
 /* rank_times_upgrade: rows of the table that view rank_stage was before version 7, put aside under
- * the name `older`, become entries of rank_times; the table goes. Within the caller's transaction. */
+ * the name `older`, become entries of rank_times; the table goes. Within the caller's
+ * transaction. */
 bool rank_times_upgrade(struct store *s, const char *older, struct err *e);
 
 #endif

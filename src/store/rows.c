@@ -90,7 +90,9 @@ static void add_columns(const char *name, size_t length, struct text *sql)
         return;
     }
     for (int i = 0; i < STUDY_TABLES; i++) {
-        if (strlen(study_table[i].name) != length || strncmp(study_table[i].name, name, length) != 0) continue;
+        if (strlen(study_table[i].name) != length ||
+            strncmp(study_table[i].name, name, length) != 0)
+            continue;
         columns_define(study_table[i].columns, sql);
         return;
     }

@@ -78,9 +78,11 @@ static const struct column run_identity[] = {
      .doc = "the scenario's file without its folder and ending"},
     {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "name of the machine's file"},
     {"label", COLUMN_STRING, .value = read_label,
-     .doc = "what it is called in tables and figures: a given name, or the machine with what was changed"},
+     .doc = "what it is called in tables and figures: a given name, or the machine with what was "
+            "changed"},
     {"machine_key", COLUMN_STRING, .value = read_machine_key,
-     .doc = "fingerprint of the machine's settings: runs on one machine have the same, whatever they are called"},
+     .doc = "fingerprint of the machine's settings: runs on one machine have the same, whatever "
+            "they are called"},
     SETTING("topology", "machine.topology.family", "family of its network"),
     SETTING("level", "machine.network.level", "how closely the network is simulated"),
     SETTING("placement", "machine.placement.kind", "of ranks on nodes"),

@@ -162,11 +162,9 @@ static bool write_column(void *context, int ncolumn, const char *const *name,
 
 /* Every column in the order in which tables, then views, were made. A key is never NULL. */
 static const char structure_sql[] =
-    "SELECT m.type, m.name, p.name, coalesce(nullif(p.type, ''), 'computed'), p.\"notnull\""
-    " OR p.pk > 0, p.pk"
-    " FROM sqlite_schema m, pragma_table_info(m.name) p"
-    " WHERE m.type IN ('table', 'view') AND m.name NOT LIKE 'sqlite%'"
-    " ORDER BY m.type, m.rowid, p.cid";
+    "SELECT m.type, m.name, p.name, coalesce(nullif(p.type, ''), 'computed'), p.\"notnull\" OR "
+    "p.pk > 0, p.pk FROM sqlite_schema m, pragma_table_info(m.name) p WHERE m.type IN ('table', "
+    "'view') AND m.name NOT LIKE 'sqlite%' ORDER BY m.type, m.rowid, p.cid";
 
 bool store_document(FILE *out, struct err *e)
 {

@@ -113,7 +113,8 @@ static bool prepare_writer(struct store *s, struct err *e)
     if (empty || s->fresh) guard_trust(s);
     else if (version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) return false;
     /* Tables that came after the first databases of this version; a new one has them all. */
-    if (!s->fresh && !store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
+    if (!s->fresh && !store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e))
+        return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(
         s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
@@ -128,7 +129,8 @@ static bool prepare_reader(struct store *s, struct err *e)
     if (!check_owner(s, &empty, &version, e)) return false;
     if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e))
         return false;
-    if (!empty && ((version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) || !guard_rows(s, e)))
+    if (!empty &&
+        ((version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) || !guard_rows(s, e)))
         return false;
     if (!store_exec(s, "PRAGMA query_only = ON", e)) return false;
     /* Without tables every query would fail with a message about the table. */
@@ -139,7 +141,8 @@ static bool prepare_reader(struct store *s, struct err *e)
 static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *folder = slash == NULL ? memory_text("./") : memory_text_part(path, (size_t)(slash - path) + 1);
+    char *folder =
+        slash == NULL ? memory_text("./") : memory_text_part(path, (size_t)(slash - path) + 1);
     return folder;
 }
 

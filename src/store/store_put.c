@@ -128,8 +128,10 @@ static void bind_number(sqlite3_stmt *add, const char *key, int nkey, const char
 {
     double number;
     enum unit unit;
-    char *name = memory_text_part(key, (size_t)nkey), *text = memory_text_part(value, (size_t)nvalue);
-    if (setting_number(name, text, &number, &unit)) store_bound(sqlite3_bind_double(add, 3, number));
+    char *name = memory_text_part(key, (size_t)nkey),
+         *text = memory_text_part(value, (size_t)nvalue);
+    if (setting_number(name, text, &number, &unit))
+        store_bound(sqlite3_bind_double(add, 3, number));
     else store_bound(sqlite3_bind_null(add, 3));
     store_bound(sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC));
     free(name);
@@ -200,7 +202,8 @@ static bool put_rank_times(struct store *s, int64_t run, const struct run_result
     if (!bind_start(s, STATEMENT_RANK_TIMES, &b, e)) return false;
     rank_times_add(r, &t);
     bind_int(&b, run);
-    store_bound(sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8));
+    store_bound(
+        sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8));
     const bool ok = store_step(s, b.statement, e);
     text_free(&t);
     return ok;
@@ -297,7 +300,8 @@ static bool put_line(struct store *s, int64_t run, int number, const char *line,
     bind_int(&b, rank);
     bind_int(&b, stream);
     /* One space ends the numbers; those that follow are the program's. */
-    store_bound(sqlite3_bind_text(b.statement, b.next, rest + 1, length - (int)(rest + 1 - line), SQLITE_STATIC));
+    store_bound(sqlite3_bind_text(b.statement, b.next, rest + 1, length - (int)(rest + 1 - line),
+                                  SQLITE_STATIC));
     return store_step(s, b.statement, e);
 }
 

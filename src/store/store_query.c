@@ -45,8 +45,8 @@ static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
     }
 }
 
-/* The text belongs to SQLite, until the next step. One that there was no memory for is no NULL of the
- * row: *ok becomes false. */
+/* The text belongs to SQLite, until the next step. One that there was no memory for is no NULL of
+ * the row: *ok becomes false. */
 static const char *column_text(sqlite3_stmt *q, int column, bool *ok)
 {
     const bool null = sqlite3_column_type(q, column) == SQLITE_NULL;
@@ -118,7 +118,8 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         sqlite3_finalize(q);
         return NULL;
     }
-    for (int i = 0; i < nparam; i++) store_bound(sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC));
+    for (int i = 0; i < nparam; i++)
+        store_bound(sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC));
     return q;
 }
 

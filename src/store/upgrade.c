@@ -132,7 +132,8 @@ static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int vers
                           " AND sql IS NOT NULL";
     char identity[64];
     snprintf(identity, sizeof identity, "PRAGMA user_version = %d", STORE_VERSION);
-    /* A table before version 7, a view since: it must be out of the way before views are dropped. */
+    /* A table before version 7, a view since: it must be out of the way before views are
+     * dropped. */
     const bool rows = has_column(s, "rank_stage", NULL);
     if (rows && !exec_named(s, e, "ALTER TABLE rank_stage RENAME TO older_rank_stage", NULL, NULL))
         return false;

@@ -4,9 +4,9 @@
 
 #include "store/connection.h"
 
-/* upgrade_runs: config_hash of every run anew from its config_text, within the caller's transaction, in
- * tables that have this version's schema already. *kept runs could not be described: they keep their hash and
- * get a row in run_older. */
+/* upgrade_runs: config_hash of every run anew from its config_text, within the caller's
+ * transaction, in tables that have this version's schema already. *kept runs could not be
+ * described: they keep their hash and get a row in run_older. */
 bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e);
 
 #endif

@@ -1,11 +1,12 @@
 /* accuracy.h - how wrong each cheaper answer is: three ladders of methods, error against time.
  *
- *   network      closed form, loggp, link, packet, flit, auto: simulated times against the finest level
- *   arithmetic   precisions, algorithms, solvers, refinements: accelerations against quad precision
- *   integration  steppers, tolerances, step sizes: the state at the end against a tight reference
+ *   network      closed form, loggp, link, packet, flit, auto: simulated times against the finest
+ * level arithmetic   precisions, algorithms, solvers, refinements: accelerations against quad
+ * precision integration  steppers, tolerances, step sizes: the state at the end against a tight
+ * reference
  *
- * Every rung has its cost twice: seconds of this computer, and predicted time on the simulated machine. What fails is
- * a rung too. */
+ * Every rung has its cost twice: seconds of this computer, and predicted time on the simulated
+ * machine. What fails is a rung too. */
 #ifndef STUDY_ACCURACY_H
 #define STUDY_ACCURACY_H
 
@@ -30,28 +31,30 @@ struct accuracy_report {
     struct arena *arena;        /* borrowed */
 };
 
-/* accuracy_measure: the ladders of a scenario, each at the largest of its points that takes seconds.
+/* accuracy_measure: the ladders of a scenario, each at the largest of its points that takes
+ * seconds.
  *
  *   spec, nspec  in   the scenario's runs
- *   within       in   relative error asked for; 0: 2% of simulated times, 1e-10 of accelerations, 1e-6 of states
- *   quiet        in   no progress
- *   a            in   memory of the report
+ *   within       in   relative error asked for; 0: 2% of simulated times, 1e-10 of accelerations,
+ * 1e-6 of states quiet        in   no progress a            in   memory of the report
  *
  *   Returns false with ERR_CONFIG or ERR_DATA when no ladder can be climbed. */
-bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
+bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet,
+                      struct arena *a, struct accuracy_report *r, struct err *e);
+
+/* accuracy_network: the network ladder alone, at the largest point of `spec` (nspec) that takes
+ * seconds; no choices. Returns as accuracy_measure. */
+bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a,
                       struct accuracy_report *r, struct err *e);
 
-/* accuracy_network: the network ladder alone, at the largest point of `spec` (nspec) that takes seconds; no choices.
- * Returns as accuracy_measure. */
-bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a, struct accuracy_report *r,
-                      struct err *e);
+/* accuracy_choose: the cheapest rung of ladder `ladder` for `quantity` with status ok and error <=
+ * tolerance. Cost is the host's time on the network ladder, the machine's on the others; rungs
+ * without a cost are passed over. */
+struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const char *ladder,
+                                       const char *quantity, double tolerance);
 
-/* accuracy_choose: the cheapest rung of ladder `ladder` for `quantity` with status ok and error <= tolerance. Cost is
- * the host's time on the network ladder, the machine's on the others; rungs without a cost are passed over. */
-struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const char *ladder, const char *quantity,
-                                       double tolerance);
-
-/* accuracy_print: all rungs as tables, then one line a ladder. accuracy_print_json: the same as one document. */
+/* accuracy_print: all rungs as tables, then one line a ladder. accuracy_print_json: the same as one
+ * document. */
 void accuracy_print(FILE *out, const struct accuracy_report *r);
 void accuracy_print_json(FILE *out, const struct accuracy_report *r);
 

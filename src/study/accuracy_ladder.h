@@ -16,10 +16,10 @@ struct ladder {
     struct arena *arena; /* scratch */
 };
 
-/* ladder_add: a new rung, failed until its maker says otherwise, error and costs unknown. The pointer holds until the
- * next is added. */
-struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung, const char *quantity,
-                                 const char *reference);
+/* ladder_add: a new rung, failed until its maker says otherwise, error and costs unknown. The
+ * pointer holds until the next is added. */
+struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung,
+                                 const char *quantity, const char *reference);
 
 /* ladder_grade: error and status: ok up to `fine`, degraded up to `poor`, otherwise failed. */
 void ladder_grade(struct accuracy_rung *r, double error, double fine, double poor);

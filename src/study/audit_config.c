@@ -129,14 +129,14 @@ static bool check_prices(struct store *s, int64_t run, const struct run_spec *sp
     struct node_spec node = spec->machine.node;
     char id[24];
     const char *const param[] = {id};
-    if (spec->kernel.own) return true; /* its time is that of blocks of code, which are not stored */
+    /* its time is that of blocks of code, which are not stored */
+    if (spec->kernel.own) return true;
     if (node.serial_rate > 0) node.flop_rate = node.serial_rate; /* as run/run.c */
     struct pricing p = {r, run, node_cost_make(&node)};
     snprintf(id, sizeof id, "%lld", (long long)run);
     return store_query(s,
                        "SELECT name, time_ps, flops, divisions, square_roots, sines, copied_bytes, "
-                       "calls FROM baseline"
-                       " WHERE run_id = CAST(?1 AS INTEGER)",
+                       "calls FROM baseline WHERE run_id = CAST(?1 AS INTEGER)",
                        1, param, NULL, price_row, &p, e);
 }
 
@@ -196,8 +196,7 @@ bool audit_configurations(struct store *s, struct audit_report *r, struct err *e
     r->nrule += 3;
     bool ok = store_query(s,
                           "SELECT r.id, config_hash, config_text, machine_changes, machine_hash, "
-                          "git, version FROM run r"
-                          " JOIN build b ON b.id = r.build_id ORDER BY r.id",
+                          "git, version FROM run r JOIN build b ON b.id = r.build_id ORDER BY r.id",
                           0, NULL, NULL, take_row, &w, e);
     arena_destroy(w.known.arena);
     arena_destroy(w.arena);

@@ -10,14 +10,16 @@ struct netcheck_accuracy {
     const char *cases;  /* the class in words */
     double mean;        /* largest mean of |error| over many cases */
     double low, high;   /* least and largest error of one case */
-    double message;     /* largest |error| of one message's arrival; 0: every arrival is the reference's;
-                           -1: messages have no reference */
+    double message;     /* largest |error| of one message's arrival; 0: every arrival is the
+                           reference's;     -1: messages have no reference */
 };
 
-/* netcheck_accuracies: entry i of the table, NULL after the last: the one place where the figures stand. */
+/* netcheck_accuracies: entry i of the table, NULL after the last: the one place where the figures
+ * stand. */
 const struct netcheck_accuracy *netcheck_accuracies(int i);
 
 /* netcheck_accuracy_of: the entry that holds for a row at `level`; never NULL. */
-const struct netcheck_accuracy *netcheck_accuracy_of(const struct netcheck_row *row, enum network_level level);
+const struct netcheck_accuracy *netcheck_accuracy_of(const struct netcheck_row *row,
+                                                     enum network_level level);
 
 #endif

@@ -1,4 +1,5 @@
-/* netcheck_ask.h - one reference case as a network and a message list, asked of every level that is wanted. */
+/* netcheck_ask.h - one reference case as a network and a message list, asked of every level that is
+ * wanted. */
 #ifndef STUDY_NETCHECK_ASK_H
 #define STUDY_NETCHECK_ASK_H
 
@@ -15,7 +16,8 @@ struct netcheck_question {
     struct traffic q;
     const double *arrival; /* (q.nmessage) reference [cycles], NULL: none */
     bool any_order;        /* arrivals agree as sets */
-    bool latency;          /* the answer is the mean latency of messages from `warm` on, not the makespan */
+    /* the answer is the mean latency of messages from `warm` on, not the makespan */
+    bool latency;
     sim_ps warm;
     double channel;      /* what the reference's channels add to the mean latency [cycles] */
     struct arena *arena; /* scratch */
@@ -25,15 +27,15 @@ struct netcheck_question {
 /* netcheck_empty: when message m would arrive in an empty network [cycles]. */
 double netcheck_empty(const struct netcheck_question *k, int m);
 
-/* netcheck_empty_latency: mean over the messages from `warm` on of netcheck_empty less their times, the channels'
- * share included [cycles]. */
+/* netcheck_empty_latency: mean over the messages from `warm` on of netcheck_empty less their times,
+ * the channels' share included [cycles]. */
 double netcheck_empty_latency(const struct netcheck_question *k);
 
 /* netcheck_ask: fill the row's answers at the levels wanted. */
 void netcheck_ask(struct netcheck_question *k);
 
-/* netcheck_ask_saturation: fill them with the load at which the mean latency of `pattern` is three times `empty`,
- * sought from the reference's bracket outwards. */
+/* netcheck_ask_saturation: fill them with the load at which the mean latency of `pattern` is three
+ * times `empty`, sought from the reference's bracket outwards. */
 void netcheck_ask_saturation(struct netcheck_question *k, const char *pattern, int flits);
 
 /* netcheck_unanswered: no level can answer the row, for the reason `why`. */

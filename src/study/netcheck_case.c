@@ -27,10 +27,12 @@ struct family_name {
 };
 
 static const struct family_name families[] = {
-    {"fattree", TOPOLOGY_FAT_TREE},    {"fat_tree", TOPOLOGY_FAT_TREE},   {"dragonfly", TOPOLOGY_DRAGONFLY},
-    {"fullmesh", TOPOLOGY_FULL_MESH},  {"full_mesh", TOPOLOGY_FULL_MESH}, {"crossbar", TOPOLOGY_CROSSBAR},
-    {"hypercube", TOPOLOGY_HYPERCUBE}, {"hcube", TOPOLOGY_HYPERCUBE},     {"torus", TOPOLOGY_TORUS},
-    {"ring", TOPOLOGY_TORUS},          {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
+    {"fattree", TOPOLOGY_FAT_TREE},    {"fat_tree", TOPOLOGY_FAT_TREE},
+    {"dragonfly", TOPOLOGY_DRAGONFLY}, {"fullmesh", TOPOLOGY_FULL_MESH},
+    {"full_mesh", TOPOLOGY_FULL_MESH}, {"crossbar", TOPOLOGY_CROSSBAR},
+    {"hypercube", TOPOLOGY_HYPERCUBE}, {"hcube", TOPOLOGY_HYPERCUBE},
+    {"torus", TOPOLOGY_TORUS},         {"ring", TOPOLOGY_TORUS},
+    {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
 };
 
 /* The number that begins at `text`. One beyond INT_MAX becomes INT_MAX, which size_fits refuses. */
@@ -266,9 +268,15 @@ static const struct {
     enum rule rule;
     bool power_of_two;
 } rules[] = {
-    {"uniform", UNIFORM, false},          {"bitcomp", BIT_COMPLEMENT, true}, {"bitrev", BIT_REVERSE, true},
-    {"transpose", TRANSPOSE, true},       {"shuffle", SHUFFLE, true},        {"tornado", TORNADO, false},
-    {"neighbor", NEIGHBOUR, false},       {"shift", SHIFT, false},           {"xor", XOR, true},
+    {"uniform", UNIFORM, false},
+    {"bitcomp", BIT_COMPLEMENT, true},
+    {"bitrev", BIT_REVERSE, true},
+    {"transpose", TRANSPOSE, true},
+    {"shuffle", SHUFFLE, true},
+    {"tornado", TORNADO, false},
+    {"neighbor", NEIGHBOUR, false},
+    {"shift", SHIFT, false},
+    {"xor", XOR, true},
     {"bad_dragon", BAD_DRAGONFLY, false},
 };
 enum { RULES = sizeof rules / sizeof *rules };

@@ -262,17 +262,22 @@ static void read_row_verdict(const struct column *c, const void *x, struct colum
 /* What one level says of one case. Keys are there only when they mean something: a level that
  * cannot run the case has `why` and no error. */
 static const struct column answer_column[] = {
-    {"arrival", COLUMN_STRING, .json = write_arrivals, .known = was_played, .doc = "of each message [cycles]"},
+    {"arrival", COLUMN_STRING, .json = write_arrivals, .known = was_played,
+     .doc = "of each message [cycles]"},
     {"deadlock", COLUMN_BOOL, ANSWER(deadlock), WHEN(ran), .doc = "the network was stuck"},
-    {"differing_messages", COLUMN_INT, ANSWER(differing), WHEN(is_compared), .doc = "arrivals that are not the same"},
+    {"differing_messages", COLUMN_INT, ANSWER(differing), WHEN(is_compared),
+     .doc = "arrivals that are not the same"},
     {"error", COLUMN_REAL, ANSWER(error), WHEN(has_error), .doc = "relative to the reference"},
     {"events", COLUMN_INT64, ANSWER(events), WHEN(ran), .doc = "dispatched by the simulator"},
     {"found", COLUMN_REAL, ANSWER(found), WHEN(ran), .doc = "time [cycles], or load at saturation"},
-    {"mean_message_error", COLUMN_REAL, ANSWER(message_error), WHEN(is_compared), .doc = "of arrivals, relative"},
+    {"mean_message_error", COLUMN_REAL, ANSWER(message_error), WHEN(is_compared),
+     .doc = "of arrivals, relative"},
     {"ran", COLUMN_BOOL, ANSWER(ran), .doc = "whether the level can run the case"},
-    {"verdict", COLUMN_STRING, .value = read_row_verdict, WHEN(is_judged), .doc = "by the stated accuracy"},
+    {"verdict", COLUMN_STRING, .value = read_row_verdict, WHEN(is_judged),
+     .doc = "by the stated accuracy"},
     {"why", COLUMN_CHARS, ANSWER(why), WHEN(says_why), .doc = "it cannot"},
-    {"worst_message_error", COLUMN_REAL, ANSWER(message_worst), WHEN(is_compared), .doc = "the largest of them"},
+    {"worst_message_error", COLUMN_REAL, ANSWER(message_worst), WHEN(is_compared),
+     .doc = "the largest of them"},
 };
 static const struct column_table answer_columns = COLUMNS(answer_column);
 
@@ -310,14 +315,18 @@ static bool has_flaw(const void *x) { return shown(x)->row->flaw[0]; }
 /* One case: its name and reference, and under `levels` an object of answers. */
 static const struct column case_column[] = {
     {"case", COLUMN_CHARS, CASE(name), .doc = "its name"},
-    {"counted", COLUMN_BOOL, .value = read_counted, .doc = "whether there is something to compare with"},
-    {"flaw", COLUMN_CHARS, CASE(flaw), WHEN(has_flaw), .doc = "in what the reference contradicts itself"},
+    {"counted", COLUMN_BOOL, .value = read_counted,
+     .doc = "whether there is something to compare with"},
+    {"flaw", COLUMN_CHARS, CASE(flaw), WHEN(has_flaw),
+     .doc = "in what the reference contradicts itself"},
     {"group", COLUMN_CHARS, CASE(group), .doc = "what it is counted with"},
     {"levels", COLUMN_STRING, .json = write_levels, .doc = "an answer for each level"},
     {"line", COLUMN_INT, CASE(line), .doc = "in the file"},
     {"messages", COLUMN_INT, CASE(nmessage), .doc = "of the case"},
-    {"reference_high", COLUMN_REAL, CASE(high), WHEN(has_reference), .doc = "largest right answer [cycles]"},
-    {"reference_low", COLUMN_REAL, CASE(low), WHEN(has_reference), .doc = "least right answer [cycles]"},
+    {"reference_high", COLUMN_REAL, CASE(high), WHEN(has_reference),
+     .doc = "largest right answer [cycles]"},
+    {"reference_low", COLUMN_REAL, CASE(low), WHEN(has_reference),
+     .doc = "least right answer [cycles]"},
 };
 static const struct column_table case_columns = COLUMNS(case_column);
 
@@ -362,7 +371,8 @@ static const struct column total_column[] = {
     {"mean_message_error", COLUMN_REAL, TOTAL(message_error), .doc = "over the cases"},
     {"messages", COLUMN_INT64, TOTAL(messages), .doc = "compared"},
     {"skipped", COLUMN_INT, TOTAL(skipped), .doc = "cases that the level cannot run"},
-    {"verdict", COLUMN_STRING, .value = read_group_verdict, WHEN(group_judged), .doc = "by the stated accuracy"},
+    {"verdict", COLUMN_STRING, .value = read_group_verdict, WHEN(group_judged),
+     .doc = "by the stated accuracy"},
     {"why", COLUMN_CHARS, VERDICT(why), WHEN(group_fails), .doc = "it fails"},
     {"worst_error", COLUMN_REAL, TOTAL(worst), .doc = "with its sign"},
     {"worst_high", COLUMN_REAL, VERDICT(high), WHEN(is_group), .doc = "the largest that it may be"},
@@ -448,7 +458,8 @@ static const struct column stated_column[] = {
     {"cases", COLUMN_STRING, STATED(cases), .doc = "the class of cases in words"},
     {"levels", COLUMN_STRING, STATED(levels), .doc = "for which it holds"},
     {"mean", COLUMN_REAL, STATED(mean), .doc = "largest mean of |error| over many cases"},
-    {"message", COLUMN_REAL, STATED(message), WHEN(has_message), .doc = "largest |error| of one message's arrival"},
+    {"message", COLUMN_REAL, STATED(message), WHEN(has_message),
+     .doc = "largest |error| of one message's arrival"},
     {"worst_high", COLUMN_REAL, STATED(high), .doc = "largest error of one case"},
     {"worst_low", COLUMN_REAL, STATED(low), .doc = "least error of one case"},
 };

@@ -1,4 +1,5 @@
-/* netcheck_rows.h - what the readers of all forms of reference case share; private to netcheck*.c. */
+/* netcheck_rows.h - what the readers of all forms of reference case share; private to
+ * netcheck*.c. */
 #ifndef STUDY_NETCHECK_ROWS_H
 #define STUDY_NETCHECK_ROWS_H
 
@@ -12,30 +13,35 @@ struct netcheck_setting {
 };
 
 /* netcheck_begin: a new row for case c, and the question that fills it. */
-struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct node *c, enum netcheck_form form);
+struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct node *c,
+                                        enum netcheck_form form);
 
 /* netcheck_wanted: whether the row, whose name is set, passes the filter; else it is taken back. */
 bool netcheck_wanted(const struct netcheck_reader *r, const struct netcheck_question *k);
 
 /* netcheck_setting_read: the setting of case c. Returns false with ERR_DATA. */
-bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c, struct netcheck_setting *s);
+bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c,
+                           struct netcheck_setting *s);
 
-/* netcheck_network: k's machine and topology. False with an error in r->e, or with none where the network is not one of
- * ours and the row says so: netcheck_told tells which. */
-bool netcheck_network(struct netcheck_reader *r, const struct node *c, const struct netcheck_setting *s,
-                      struct netcheck_question *k);
+/* netcheck_network: k's machine and topology. False with an error in r->e, or with none where the
+ * network is not one of ours and the row says so: netcheck_told tells which. */
+bool netcheck_network(struct netcheck_reader *r, const struct node *c,
+                      const struct netcheck_setting *s, struct netcheck_question *k);
 bool netcheck_told(const struct netcheck_reader *r);
 
-/* netcheck_flaw: note that the reference says `found` of `what` where the case makes it `expected`; the first one
- * counts. netcheck_flaw_of_key: the same for the number `key` of c, if it is there. */
+/* netcheck_flaw: note that the reference says `found` of `what` where the case makes it `expected`;
+ * the first one counts. netcheck_flaw_of_key: the same for the number `key` of c, if it is
+ * there. */
 void netcheck_flaw(struct netcheck_row *row, const char *what, double found, double expected);
-void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key, double expected);
+void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key,
+                          double expected);
 
-/* netcheck_given: the number `key` of c; NULL when it is missing or null, and with a flaw when it is none. */
+/* netcheck_given: the number `key` of c; NULL when it is missing or null, and with a flaw when it
+ * is none. */
 const struct node *netcheck_given(struct netcheck_row *row, const struct node *c, const char *key);
 
-/* netcheck_check_arrivals: k's reference arrivals against its makespan and against an empty network, in which no
- * message is slower. */
+/* netcheck_check_arrivals: k's reference arrivals against its makespan and against an empty
+ * network, in which no message is slower. */
 void netcheck_check_arrivals(struct netcheck_question *k, double makespan);
 
 /* The rows of one case of each form. Return false with ERR_DATA. */

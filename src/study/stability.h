@@ -1,6 +1,8 @@
-/* stability.h - the suite of stiff and extreme scenes against every algorithm: what holds, what degrades, what fails.
+/* stability.h - the suite of stiff and extreme scenes against every algorithm: what holds, what
+ * degrades, what fails.
  *
- * Accelerations are held against quad precision at the same inputs; motions against a tight reference. */
+ * Accelerations are held against quad precision at the same inputs; motions against a tight
+ * reference. */
 #ifndef STUDY_STABILITY_H
 #define STUDY_STABILITY_H
 
@@ -22,7 +24,8 @@ struct stability_report {
 
 struct stability_options {
     int most_bodies; /* leave out larger scenes; 0: none */
-    int workers;     /* processes that measure scenes, 0: as many as processors; no row depends on it */
+    /* processes that measure scenes, 0: as many as processors; no row depends on it */
+    int workers;
     bool quiet;
 };
 
@@ -30,12 +33,13 @@ struct stability_options {
  *
  *   a  in  memory of the report
  *
- *   Returns false with ERR_CONFIG or ERR_DATA when a scene cannot be built, ERR_INTERNAL when a worker dies. */
-bool stability_measure(const struct run_spec *spec, int nspec, const struct stability_options *o, struct arena *a,
-                       struct stability_report *r, struct err *e);
+ *   Returns false with ERR_CONFIG or ERR_DATA when a scene cannot be built, ERR_INTERNAL when a
+ * worker dies. */
+bool stability_measure(const struct run_spec *spec, int nspec, const struct stability_options *o,
+                       struct arena *a, struct stability_report *r, struct err *e);
 
-/* stability_print: a line a row, then the counts and the worst scene. stability_print_json: the same as one document.
- */
+/* stability_print: a line a row, then the counts and the worst scene. stability_print_json: the
+ * same as one document. */
 void stability_print(FILE *out, const struct stability_report *r);
 void stability_print_json(FILE *out, const struct stability_report *r);
 

@@ -31,7 +31,8 @@ struct judge {
     const struct state *s;
     struct arena *a;
     double *reference;   /* (nu) */
-    double *right;       /* (nu) joint forces of the reference by inverse dynamics in quad precision */
+    /* (nu) joint forces of the reference by inverse dynamics in quad precision */
+    double *right;
     double force;        /* largest joint force with the right answer: the residual's scale */
     double condition;
 };
@@ -156,21 +157,33 @@ static const struct variant {
     bool as_needed; /* what a run would switch on by itself */
 } variant_table[] = {
     {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
-    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
+    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0,
+     0, false, false},
     {"direct cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
-    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
-    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 0, false, false},
+    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0,
+     0, false, false},
+    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1,
+     0, false, false},
     {"robust cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
-    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
-    {"twice cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, MOST_INNER, 0, true, false},
-    {"twice pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, MOST_INNER, 0, true, false},
-    {"paper pcr as needed", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
-    {"direct pcr as needed", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
-    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
+    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1,
+     1, false, false},
+    {"twice cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, MOST_INNER,
+     0, true, false},
+    {"twice pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, MOST_INNER,
+     0, true, false},
+    {"paper pcr as needed", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0,
+     0, false, true},
+    {"direct pcr as needed", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0,
+     0, false, true},
+    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1,
+     1, false, false},
     {"paper contraction", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
-    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
-    {"paper contraction as needed", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, true},
-    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
+    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0,
+     0, false, false},
+    {"paper contraction as needed", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0,
+     0, false, true},
+    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1,
+     1, false, false},
 };
 
 /* A variant as a run on a crossbar with a body, or several, per processor. Then as a run would
@@ -299,7 +312,8 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
                              const struct state *s, bool causes, struct arena *scratch)
 {
     const int first = r->nrow;
-    struct judge j = {.report = r, .subject = subject, .m = m, .s = s, .a = scratch, .condition = NAN};
+    struct judge j = {
+        .report = r, .subject = subject, .m = m, .s = s, .a = scratch, .condition = NAN};
     j.reference = TAKE(scratch, m->nu + 1, double);
     j.right = TAKE(scratch, m->nu + 1, double);
     if (!quad_forward(m, s, scratch, j.reference)) {

@@ -1,7 +1,8 @@
-/* trial.h - one evaluation of a parallel kernel on virtual processors, without references: for ladders and suites.
+/* trial.h - one evaluation of a parallel kernel on virtual processors, without references: for
+ * ladders and suites.
  *
- * A trial never ends the program that makes it: a kernel that refuses the scene or a machine that cannot run the level
- * is an outcome with its reason. */
+ * A trial never ends the program that makes it: a kernel that refuses the scene or a machine that
+ * cannot run the level is an outcome with its reason. */
 #ifndef STUDY_TRIAL_H
 #define STUDY_TRIAL_H
 
@@ -28,24 +29,26 @@ struct trial {
     double host_s;      /* wall time of the simulation */
 };
 
-/* trial_run: run spec->kernel on spec->machine with spec->nrank processors for model m (NULL: kernels without a model)
- * in state s. Memory from a. */
-struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a);
+/* trial_run: run spec->kernel on spec->machine with spec->nrank processors for model m (NULL:
+ * kernels without a model) in state s. Memory from a. */
+struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s,
+                       struct arena *a);
 
-/* trial_open: the program of `spec` opened (program.h) for that model and state, or for what it asks for where m is
- * NULL. Memory from a. Returns false with *e set when it cannot run them. */
-bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m, const struct state *s,
-                struct arena *a, struct err *e);
+/* trial_open: the program of `spec` opened (program.h) for that model and state, or for what it
+ * asks for where m is NULL. Memory from a. Returns false with *e set when it cannot run them. */
+bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m,
+                const struct state *s, struct arena *a, struct err *e);
 
 /* trial_machine: a crossbar of nrank processors; answers do not depend on the machine. */
 struct machine_spec trial_machine(int nrank);
 
-/* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no numbers, 0 for equal. */
+/* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no
+ * numbers, 0 for equal. */
 double trial_error(const double *x, const double *reference, int n);
 
-/* trial_change_error: max |x - reference| over the largest number (of n) that the reference has at the end of a motion
- * or `begin` at its beginning: what has come to rest would have no scale of its own. INFINITY when x or the reference
- * has no numbers. */
+/* trial_change_error: max |x - reference| over the largest number (of n) that the reference has at
+ * the end of a motion or `begin` at its beginning: what has come to rest would have no scale of its
+ * own. INFINITY when x or the reference has no numbers. */
 double trial_change_error(const double *x, const double *reference, const double *begin, int n);
 
 #endif

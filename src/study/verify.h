@@ -1,15 +1,15 @@
 /* verify.h - every algorithm held against reference vectors computed by others.
  *
- * A row is one algorithm and one quantity of one case. Its error is the largest difference from the reference, each
- * number by its own scale: how far the exact answer moves when the inputs move by one rounding, in units of that
- * rounding (verify_answers.h). Neither the largest number beside it nor what the file says of other programs excuses an
- * error.
+ * A row is one algorithm and one quantity of one case. Its error is the largest difference from the
+ * reference, each number by its own scale: how far the exact answer moves when the inputs move by
+ * one rounding, in units of that rounding (verify_answers.h). Neither the largest number beside it
+ * nor what the file says of other programs excuses an error.
  *
  *   pass             the error is within the tolerance
- *   rounding         it is not, but the same algorithm in quad precision is, and by the tolerance of the row
- *   algorithm-fails  quad precision does not mend it; articulated bodies in quad precision confirm the file's answer,
- * and the algorithm is right about the same scene with even masses and inertias. `remedy`: what works fail everything
- * else not-applicable   the note says why
+ *   rounding         it is not, but the same algorithm in quad precision is, and by the tolerance
+ * of the row algorithm-fails  quad precision does not mend it; articulated bodies in quad precision
+ * confirm the file's answer, and the algorithm is right about the same scene with even masses and
+ * inertias. `remedy`: what works fail everything else not-applicable   the note says why
  *
  * A case passes when no row fails and every quantity that was compared has a row that passes. */
 #ifndef STUDY_VERIFY_H
@@ -24,16 +24,25 @@
 #include "spec/machine_spec.h"
 
 struct verify_options {
-    double tolerance_inverse;  /* everything but accelerations and loop forces; 0: 1e-12, in single precision 1e-4 */
-    double tolerance_forward;  /* accelerations and loop forces; 0: 1e-10, in single precision 1e-3 */
+    /* everything but accelerations and loop forces; 0: 1e-12, in single precision 1e-4 */
+    double tolerance_inverse;
+    /* accelerations and loop forces; 0: 1e-10, in single precision 1e-3 */
+    double tolerance_forward;
     enum precision precision;  /* of the algorithms under test */
     bool parallel;             /* the parallel kernels too */
-    const struct machine_spec *machine; /* that they run on; NULL: a crossbar of as many nodes as there are ranks */
-    bool all_ranks; /* large cases too on P = 1, 2, 3, n/2, n, otherwise on 3 and n; and by their mass matrix */
+    /* that they run on; NULL: a crossbar of as many nodes as there are ranks */
+    const struct machine_spec *machine;
+    /* large cases too on P = 1, 2, 3, n/2, n, otherwise on 3 and n; and by their mass matrix */
+    bool all_ranks;
 };
 
 enum verify_verdict {
-    VERIFY_PASS, VERIFY_ROUNDING, VERIFY_ALGORITHM_FAILS, VERIFY_FAIL, VERIFY_NOT_APPLICABLE, VERIFY_VERDICTS
+    VERIFY_PASS,
+    VERIFY_ROUNDING,
+    VERIFY_ALGORITHM_FAILS,
+    VERIFY_FAIL,
+    VERIFY_NOT_APPLICABLE,
+    VERIFY_VERDICTS
 };
 
 struct verify_row {
@@ -43,7 +52,8 @@ struct verify_row {
     char ranks[32];        /* parallel: the numbers of ranks tried, "1,2,3,8,16" */
     int worst_rank;        /* parallel: with how many the error was largest */
     double error;          /* by the numbers' own scales; INFINITY: an answer that is no number */
-    double plain;          /* max |x - ref| / max |ref|, as libraries quote theirs; says nothing of the verdict */
+    /* max |x - ref| / max |ref|, as libraries quote theirs; says nothing of the verdict */
+    double plain;
     double quad;           /* rows above the tolerance: the error in quad precision */
     double tolerance;
     enum verify_verdict verdict;
@@ -71,20 +81,22 @@ struct verify_report {
  *   r    out  filled when true is returned, r->passed or not
  *
  *   Returns false when the file cannot be used: ERR_NO_INPUT, ERR_IO, ERR_DATA (file and line). */
-bool verify_file(const char *path, const struct verify_options *o, struct arena *a, struct verify_report *r,
-                 struct err *e);
+bool verify_file(const char *path, const struct verify_options *o, struct arena *a,
+                 struct verify_report *r, struct err *e);
 
 /* verify_print: one case as a table. `brief` prints the heading and only rows that do not pass. */
 void verify_print(FILE *out, const struct verify_report *r, bool brief);
 
-/* verify_print_matrix: one line for each of n reports, as a Markdown table: the largest error of each serial algorithm,
- * of the parallel kernels by formulation (over all solvers and numbers of ranks), and of the best library. */
+/* verify_print_matrix: one line for each of n reports, as a Markdown table: the largest error of
+ * each serial algorithm, of the parallel kernels by formulation (over all solvers and numbers of
+ * ranks), and of the best library. */
 void verify_print_matrix(FILE *out, const struct verify_report *r, int n);
 
 /* verify_print_summary: the counts over n reports, by verdict. */
 void verify_print_summary(FILE *out, const struct verify_report *r, int n);
 
-/* verify_print_json: n reports as one document, keys sorted, numbers that are not finite as null. */
+/* verify_print_json: n reports as one document, keys sorted, numbers that are not finite as
+ * null. */
 void verify_print_json(FILE *out, const struct verify_report *r, int n);
 
 /* verify_verdict_word: "pass", "rounding", "algorithm-fails", "fail", "not-applicable". */

@@ -31,13 +31,17 @@ static const struct variant variant_table[] = {
      {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
     {"parallel inverse balanced",
      {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
-#define FORWARD(text, ...) {"parallel forward " text, {.name = "forward", .composites_incoming = true, __VA_ARGS__}}
-#define BOTH(text, ...)                                                                                                \
-    FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                                             \
-        FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                                       \
-        FORWARD("refined " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, __VA_ARGS__),              \
-        FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, .outer_refinements = 1,     \
-                __VA_ARGS__)
+#define FORWARD(text, ...)                                                                         \
+    {                                                                                              \
+        "parallel forward " text, { .name = "forward", .composites_incoming = true, __VA_ARGS__ }  \
+    }
+#define BOTH(text, ...)                                                                            \
+    FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                         \
+        FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                   \
+        FORWARD("refined " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1,        \
+                __VA_ARGS__),                                                                      \
+        FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1,         \
+                .outer_refinements = 1, __VA_ARGS__)
     BOTH("thomas", .solver = SOLVER_THOMAS),
     BOTH("cr", .solver = SOLVER_CR),
     BOTH("pcr", .solver = SOLVER_PCR),

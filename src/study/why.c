@@ -117,8 +117,7 @@ static void add_ranks(struct why *w, struct arena *a)
     memcpy(w->rank, of, (size_t)w->nrank * sizeof *of);
 }
 
-/* --- idealised machines
- * ------------------------------------------------------------------------------------------ */
+/* --- idealised machines ----------------------------------------------------------------------- */
 
 static void no_latency(struct machine_spec *m)
 {
@@ -141,12 +140,13 @@ static void no_overhead(struct machine_spec *m)
     }
 }
 
-/* So fast that a flit takes the least time there is, 1 ps. Levels with flits refuse the rate 0, which
- * means unlimited elsewhere; ports without a bandwidth of their own have the link's. */
+/* So fast that a flit takes the least time there is, 1 ps. Levels with flits refuse the rate 0,
+ * which means unlimited elsewhere; ports without a bandwidth of their own have the link's. */
 static void no_bytes(struct machine_spec *m)
 {
     m->network.link_bandwidth = 1e18;
-    m->network.buffer_flits = 1 << 24; /* a latency is many such flits, which a buffer has to hold */
+    /* a latency is many such flits, which a buffer has to hold */
+    m->network.buffer_flits = 1 << 24;
     m->network.injection_bandwidth = m->network.ejection_bandwidth = 0;
     memset(m->topology.dim_bandwidth, 0, sizeof m->topology.dim_bandwidth);
     m->software.gap_per_byte = 0;
@@ -155,7 +155,8 @@ static void no_bytes(struct machine_spec *m)
 
 static void no_computing(struct machine_spec *m)
 {
-    m->node.flop_rate = m->node.clock = 0; /* node_cost.c: no cost, neither of operations nor of instructions */
+    /* node_cost.c: no cost, neither of operations nor of instructions */
+    m->node.flop_rate = m->node.clock = 0;
     m->node.div_cycles = m->node.sqrt_cycles = m->node.trig_cycles = m->node.call_time = 0;
     m->node.copy_bandwidth = 0;
 }
@@ -192,8 +193,7 @@ static bool find_limits(const struct run_spec *spec, int workers, bool quiet, st
     return true;
 }
 
-/* --- how far a parameter may move
- * -------------------------------------------------------------------------------- */
+/* --- how far a parameter may move ------------------------------------------------------------- */
 
 enum { ASKED = 8, ROUNDS = 6 };
 static const double LONGER = 1.05, MOST_FACTOR = 1000, NEAR = 1e-4;

@@ -224,7 +224,8 @@ void why_contributions(const struct machine_spec *m, struct why *out)
 {
     double time[PARAMETERS] = {0};
     struct priced plain = price(m), doubled[KERNEL_BYTE + 1];
-    /* Those behind KERNEL_BYTE are the only parameter of their causes: add_whole needs no prices. */
+    /* Those behind KERNEL_BYTE are the only parameter of their causes: add_whole needs no
+     * prices. */
     for (int p = 0; p <= KERNEL_BYTE; p++) {
         struct machine_spec changed = *m;
         scale(&changed, (enum parameter)p, 2);

@@ -1,10 +1,11 @@
-/* clock.c - a virtual processor's clock: when it stops, waits and goes on, and what the timeline keeps of it. */
+/* clock.c - a virtual processor's clock: when it stops, waits and goes on, and what the timeline
+ * keeps of it. */
 #include <string.h>
 
 #include "vp/vp.h"
 
-/* A ring of as many places as ranks is enough, as each rank is woken at most once before it goes on.
- * First come, first served: the order in which the host runs ranks is fixed, and so are
+/* A ring of as many places as ranks is enough, as each rank is woken at most once before it goes
+ * on. First come, first served: the order in which the host runs ranks is fixed, and so are
  * digests. */
 void vp_wake(struct world *w, struct vp *v)
 {
@@ -39,13 +40,16 @@ void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
     /* The wait is cut in two: what would have passed on an empty machine is wait, the
      * rest is contention (docs/network.md). Both are within [clock, time], whatever the
      * caller says. */
-    sim_ps free_of_others = uncontended < v->clock ? v->clock : uncontended > time ? time : uncontended;
+    sim_ps free_of_others = uncontended < v->clock ? v->clock
+                            : uncontended > time   ? time
+                                                   : uncontended;
     vp_stage_time(v)->wait_ps += free_of_others - v->clock;
     vp_stage_time(v)->contention_ps += time - free_of_others;
     vp_advance(v, time);
 }
 
-void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message)
+void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes,
+             int64_t message)
 {
     struct world *w = v->world;
     struct run_result *r = w->result;

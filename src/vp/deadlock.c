@@ -1,4 +1,5 @@
-/* deadlock.c - who waits for whom when no event is left, or how far a rank came when simulated time ended.
+/* deadlock.c - who waits for whom when no event is left, or how far a rank came when simulated time
+ * ended.
  *
  * Nothing is detected here: when no event is left and ranks still wait, the run is a
  * deadlock by definition. What is worked out is a text that names a cause. */
@@ -12,7 +13,8 @@
 /* -1 where no single rank could end the wait. */
 static int peer_of(const struct vp *v)
 {
-    return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer : -1;
+    return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer
+                                                                               : -1;
 }
 
 /* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its
@@ -21,11 +23,13 @@ static int peer_of(const struct vp *v)
 static int describe_receive(const struct comm_request *r, char *s, int size)
 {
     char tag[48] = "any tag", from[24] = "any rank";
-    if (r->mask & UINT32_MAX) snprintf(tag, sizeof tag, "tag %lld", (long long)(r->tag & UINT32_MAX));
+    if (r->mask & UINT32_MAX)
+        snprintf(tag, sizeof tag, "tag %lld", (long long)(r->tag & UINT32_MAX));
     if (r->peer >= 0) snprintf(from, sizeof from, "rank %d", r->peer);
-    if (r->kind == RECEIVE_PROBE) return snprintf(s, size, "probes for a message, %s, from %s", tag, from);
-    return snprintf(s, size, "waits to receive %s%lld bytes, %s, from %s", r->kind == RECEIVE_EXACT ? "" : "at most ",
-                    (long long)r->bytes, tag, from);
+    if (r->kind == RECEIVE_PROBE)
+        return snprintf(s, size, "probes for a message, %s, from %s", tag, from);
+    return snprintf(s, size, "waits to receive %s%lld bytes, %s, from %s",
+                    r->kind == RECEIVE_EXACT ? "" : "at most ", (long long)r->bytes, tag, from);
 }
 
 static int describe(const struct vp *v, char *s, int size)
@@ -37,22 +41,26 @@ static int describe(const struct vp *v, char *s, int size)
     switch (v->waiting_for) {
     case WAITING_RECEIVE:
         describe_receive(r, receive, sizeof receive);
-        return snprintf(s, size, "rank %d in %s %s (%s:%d)", v->comm.rank, stage, receive, vp_base_name(r->file),
-                        r->line);
+        return snprintf(s, size, "rank %d in %s %s (%s:%d)", v->comm.rank, stage, receive,
+                        vp_base_name(r->file), r->line);
     case WAITING_SEND:
-        return snprintf(s, size, "rank %d in %s waits for rank %d to take %lld bytes, tag %lld (%s:%d)", v->comm.rank,
-                        stage, r->peer, (long long)r->bytes, (long long)(r->tag & UINT32_MAX), vp_base_name(r->file),
-                        r->line);
+        return snprintf(s, size,
+                        "rank %d in %s waits for rank %d to take %lld bytes, tag %lld (%s:%d)",
+                        v->comm.rank, stage, r->peer, (long long)r->bytes,
+                        (long long)(r->tag & UINT32_MAX), vp_base_name(r->file), r->line);
     case WAITING_BARRIER:
-        return snprintf(s, size, "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
-                        v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line, v->world->barrier_count,
-                        v->world->nrank);
+        return snprintf(s, size,
+                        "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
+                        v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line,
+                        v->world->barrier_count, v->world->nrank);
     case WAITING_ANY: /* for a receive that nothing has come for, if there is one */
         r = v->posted;
         if (r) describe_receive(r, receive, sizeof receive);
         return snprintf(s, size, "rank %d in %s %s%s (%s:%d)", v->comm.rank, stage,
-                        r ? "waits for any of several requests, first it " : "waits for any of several requests",
-                        r ? receive : "", vp_base_name(r ? r->file : v->comm.file), r ? r->line : v->comm.line);
+                        r ? "waits for any of several requests, first it "
+                          : "waits for any of several requests",
+                        r ? receive : "", vp_base_name(r ? r->file : v->comm.file),
+                        r ? r->line : v->comm.line);
     default:
         return snprintf(s, size, "rank %d in %s waits for the kernel server", v->comm.rank, stage);
     }
@@ -64,7 +72,8 @@ static void describe_others(struct world *w, const struct vp *v, char *s, int si
 {
     int finished = 0, told = 0, used = 0;
     for (int i = 0; i < w->nrank; i++) finished += w->vp[i].waiting_for == WAITING_NOTHING;
-    used += snprintf(s, size, "; of the others %d have finished and %d wait", finished, w->nrank - 1 - finished);
+    used += snprintf(s, size, "; of the others %d have finished and %d wait", finished,
+                     w->nrank - 1 - finished);
     for (int i = 0; i < w->nrank && told < 3 && used < size; i++) {
         if (&w->vp[i] == v || w->vp[i].waiting_for == WAITING_NOTHING) continue;
         used += snprintf(s + used, size - used, "%s", told++ ? "; " : ": ");
@@ -75,7 +84,8 @@ static void describe_others(struct world *w, const struct vp *v, char *s, int si
 /* Such a wait ends every chain: there is no one to follow. */
 static bool waits_for_anybody(const struct vp *v)
 {
-    return v->waiting_for == WAITING_ANY || (v->waiting_for == WAITING_RECEIVE && v->waiting->peer < 0);
+    return v->waiting_for == WAITING_ANY ||
+           (v->waiting_for == WAITING_RECEIVE && v->waiting->peer < 0);
 }
 
 static struct vp *first_blocked(struct world *w)
@@ -136,8 +146,7 @@ void find_leftovers(struct world *w)
         char text[512];
         snprintf(text, sizeof text,
                  "it has ended without receiving the message of %lld bytes, tag %lld, that rank %d "
-                 "sent it at "
-                 "%.9g s",
+                 "sent it at %.9g s",
                  (long long)m->bytes, (long long)m->tag, m->from->comm.rank,
                  (double)m->sent / SIM_PS_PER_S);
         vp_record_failure(v, v->comm.file, v->comm.line, text);
@@ -153,7 +162,9 @@ void late_explain(struct world *w)
      * far the run is. */
     for (int i = 0; i < w->nrank && !w->late; i++)
         if (!v || w->vp[i].clock > v->clock) v = &w->vp[i];
-    snprintf(r->text, sizeof r->text, "simulated time ends at %.3g s: rank %d had reached %.6g s in %s, and what %s "
-             "next comes later", PS_LAST / SIM_PS_PER_S, v->comm.rank, (double)v->clock / SIM_PS_PER_S,
+    snprintf(r->text, sizeof r->text,
+             "simulated time ends at %.3g s: rank %d had reached %.6g s in %s, and what %s next "
+             "comes later",
+             PS_LAST / SIM_PS_PER_S, v->comm.rank, (double)v->clock / SIM_PS_PER_S,
              r->stage_name[v->stage], w->late ? "it does" : "happens");
 }

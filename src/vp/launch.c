@@ -1,4 +1,5 @@
-/* launch.c - a message sets out: into the network, or over the memory that two processors of one node share. */
+/* launch.c - a message sets out: into the network, or over the memory that two processors of one
+ * node share. */
 #include "vp/path.h"
 #include "vp/vp.h"
 
@@ -6,7 +7,8 @@
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
 {
     m->net.src = from->node;
-    m->net.dst = w->placement.node[to - w->vp]; /* the other rank's state may lie cold, or be another thread's */
+    /* the other rank's state may lie cold, or be another thread's */
+    m->net.dst = w->placement.node[to - w->vp];
     m->net.processor = from->processor;
     if (!w->shared_channel || m->net.src != m->net.dst) {
         net_send(w->net, &m->net);
@@ -15,7 +17,8 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
     /* Memory that two processors share (docs/network.md): latency and bytes at its
      * bandwidth, without contention, so the arrival is known at once and takes no event. */
     m->net.injected = m->net.ready;
-    m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
+    m->net.arrival =
+        m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
     m->net.uncontended = m->net.arrival;
     if (w->path)
         m->net.path = path_add(w->path, m->net.path, m->net.arrival, PATH_MEMORY, from->comm.rank,

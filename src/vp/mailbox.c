@@ -1,4 +1,5 @@
-/* mailbox.c - messages and receives find each other by (source, tag), in the order sent and the order posted.
+/* mailbox.c - messages and receives find each other by (source, tag), in the order sent and the
+ * order posted.
  *
  * Used by programs that have promised to do without wildcards and tests (world_load.timed
  * = false): what a receive takes then follows from the order of sends and receives alone,

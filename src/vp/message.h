@@ -1,5 +1,5 @@
-/* message.h - messages between virtual processors: their states, the pool, matching, and the hand-shake of large ones.
- */
+/* message.h - messages between virtual processors: their states, the pool, matching, and the
+ * hand-shake of large ones. */
 #ifndef VP_MESSAGE_H
 #define VP_MESSAGE_H
 
@@ -15,8 +15,8 @@ struct world;
 
 struct unmatched;
 
-/* States of comm_request.active. COMING: a request to send is bound, its data are not here; TAKEN: bound by a probe and
- * still without a buffer. */
+/* States of comm_request.active. COMING: a request to send is bound, its data are not here; TAKEN:
+ * bound by a probe and still without a buffer. */
 enum {
     REQUEST_DONE,
     REQUEST_POSTED,
@@ -28,7 +28,8 @@ enum {
     REQUEST_TAKEN
 };
 
-/* comm_request.kind of receives: any size up to the room, exactly that size, or a look that takes nothing. */
+/* comm_request.kind of receives: any size up to the room, exactly that size, or a look that takes
+ * nothing. */
 enum { RECEIVE_MATCHING, RECEIVE_EXACT, RECEIVE_PROBE };
 
 enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA };
@@ -52,7 +53,8 @@ struct message {
     char data[];
 };
 
-enum { MESSAGE_CLASSES = 65 + 4 * 40 }; /* by 64 bytes up to 4 KiB, by quarters of an octave up to 4 PiB */
+/* by 64 bytes up to 4 KiB, by quarters of an octave up to 4 PiB */
+enum { MESSAGE_CLASSES = 65 + 4 * 40 };
 
 /* message_key: orders events of messages at one time by sender, then by count. */
 static inline uint64_t message_key(const struct message *m)
@@ -67,7 +69,8 @@ static inline int message_source(const struct message *m) { return (int)(m->net.
 
 struct message_depot;
 
-/* Messages that nobody uses. Each host thread has a pool of its own; `depot` joins those of a run with several. */
+/* Messages that nobody uses. Each host thread has a pool of its own; `depot` joins those of a run
+ * with several. */
 struct message_pool {
     struct arena *arena; /* where new ones come from; borrowed */
     struct message *free[MESSAGE_CLASSES];
@@ -76,12 +79,13 @@ struct message_pool {
     int count[MESSAGE_CLASSES];            /* length of `free` */
 };
 
-/* message_take: a message with room for `bytes` bytes, all zero but for its size; message_give: back to the pool. */
+/* message_take: a message with room for `bytes` bytes, all zero but for its size; message_give:
+ * back to the pool. */
 struct message *message_take(struct message_pool *p, int64_t bytes);
 void message_give(struct message_pool *p, struct message *m);
 
-/* message_depot_create, message_depot_destroy: where threads that receive more than they send leave messages for the
- * others. The caller owns it; destroy accepts NULL. */
+/* message_depot_create, message_depot_destroy: where threads that receive more than they send leave
+ * messages for the others. The caller owns it; destroy accepts NULL. */
 struct message_depot *message_depot_create(void);
 void message_depot_destroy(struct message_depot *d);
 
@@ -107,7 +111,8 @@ void mailbox_deliver(struct vp *v, struct message *m);
 /* rendezvous_send: the first step of a message too large to be sent eagerly. */
 void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r);
 
-/* rendezvous_matched: the receiver has bound a request to send. `now`: the later of posting and arrival. */
+/* rendezvous_matched: the receiver has bound a request to send. `now`: the later of posting and
+ * arrival. */
 void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now);
 
 /* rendezvous_deliver: a clear-to-send or the data have arrived. */

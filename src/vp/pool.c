@@ -20,7 +20,8 @@ enum { CLASS_BYTES = 64, SMALL_CLASSES = 65, CHUNK_MESSAGES = 64 };
 static int large_class(int64_t *bytes)
 {
     const int octave = 63 - __builtin_clzll((uint64_t)*bytes - 1); /* 2^octave <= bytes - 1 */
-    const int64_t quarter = (INT64_C(1) << octave) / 4, n = (*bytes + quarter - 1) / quarter; /* 5 .. 8 */
+    /* 5 .. 8 */
+    const int64_t quarter = (INT64_C(1) << octave) / 4, n = (*bytes + quarter - 1) / quarter;
     *bytes = n * quarter;
     return SMALL_CLASSES + (octave - 12) * 4 + (int)n - 5;
 }
@@ -56,11 +57,15 @@ static inline int magazine_size(int class) { return class < SMALL_CLASSES ? CHUN
 
 struct message_depot {
     pthread_mutex_t lock;
-    struct message *magazine[MESSAGE_CLASSES]; /* joined through the `next_magazine` of their first messages */
+    /* joined through the `next_magazine` of their first messages */
+    struct message *magazine[MESSAGE_CLASSES];
 };
 
 /* A message that nobody uses has no sender: the place holds the next magazine. */
-static inline struct message **next_magazine(struct message *m) { return (struct message **)(void *)&m->from; }
+static inline struct message **next_magazine(struct message *m)
+{
+    return (struct message **)(void *)&m->from;
+}
 
 struct message_depot *message_depot_create(void)
 {

@@ -61,8 +61,8 @@ struct post *post_open(const struct hosts *h, int run)
     return p;
 }
 
-/* What was sent last may be on its way still, and MPI reads it until it is through. When the run has
- * failed its receiver may never take it: then its memory is left to MPI. */
+/* What was sent last may be on its way still, and MPI reads it until it is through. When the run
+ * has failed its receiver may never take it: then its memory is left to MPI. */
 void post_close(struct post *p)
 {
     if (!p) return;
@@ -85,7 +85,8 @@ void post_close(struct post *p)
 /* Letters begin at multiples of eight bytes. */
 static size_t whole(size_t bytes) { return (bytes + 7) / 8 * 8; }
 
-/* Counted when it is put in, so that a letter that has not left yet is under way for those who count. */
+/* Counted when it is put in, so that a letter that has not left yet is under way for those who
+ * count. */
 void post_put(struct post *p, int process, const struct letter *l, const void *data)
 {
     struct bag *b = &p->bag[process];
@@ -122,7 +123,8 @@ static bool finish_sending(struct post *p)
     return true;
 }
 
-/* All at once: the latency of a letter matters more than the number of messages, as nobody goes on without it. */
+/* All at once: the latency of a letter matters more than the number of messages, as nobody goes on
+ * without it. */
 static bool send_bags(struct post *p, bool *busy)
 {
     for (int i = 0; i < p->h->size; i++) {
@@ -140,13 +142,15 @@ static bool send_bags(struct post *p, bool *busy)
         s->next = p->sending;
         p->sending = s;
         *busy = true;
-        if (!p->h->call->send_begin(i, p->tag + KIND_LETTERS, data, used, &s->request)) return false;
+        if (!p->h->call->send_begin(i, p->tag + KIND_LETTERS, data, used, &s->request))
+            return false;
     }
     return finish_sending(p);
 }
 
 /* One behind the other, as post_put has put them. */
-static void open_letters(struct post *p, const char *data, size_t bytes, post_take_fn *take, void *context)
+static void open_letters(struct post *p, const char *data, size_t bytes, post_take_fn *take,
+                         void *context)
 {
     for (size_t at = 0; at < bytes; p->received++) {
         struct letter l;
@@ -156,7 +160,8 @@ static void open_letters(struct post *p, const char *data, size_t bytes, post_ta
     }
 }
 
-/* Read by the one thread that receives, while no share runs if `idle`: both numbers are of one moment. */
+/* Read by the one thread that receives, while no share runs if `idle`: both numbers are of one
+ * moment. */
 static struct count own_count(const struct post *p, bool idle, bool failed)
 {
     return (struct count){p->wave.wave, p->sent, p->received, idle, failed};
@@ -172,8 +177,8 @@ static void add_answer(struct post *p, const struct count *c)
 }
 
 /* What one message is about. */
-static bool take_message(struct post *p, const struct hosts_message *m, bool idle, bool failed, post_take_fn *take,
-                         void *context)
+static bool take_message(struct post *p, const struct hosts_message *m, bool idle, bool failed,
+                         post_take_fn *take, void *context)
 {
     char *data = malloc(m->bytes + 1);
     struct count c = {0};
@@ -201,9 +206,10 @@ static bool take_message(struct post *p, const struct hosts_message *m, bool idl
     return ok;
 }
 
-/* By kind, since the tags of this run alone are its own. Counts only when every letter that has come
- * is taken, and made work for somebody: then `idle` is no longer true. */
-static bool receive(struct post *p, bool idle, bool failed, post_take_fn *take, void *context, bool *busy)
+/* By kind, since the tags of this run alone are its own. Counts only when every letter that has
+ * come is taken, and made work for somebody: then `idle` is no longer true. */
+static bool receive(struct post *p, bool idle, bool failed, post_take_fn *take, void *context,
+                    bool *busy)
 {
     bool letters = false;
     for (int kind = KIND_LETTERS; kind <= KIND_END; kind++)
@@ -222,7 +228,8 @@ static bool receive(struct post *p, bool idle, bool failed, post_take_fn *take, 
 static bool send_all(struct post *p, enum kind kind, const struct count *c)
 {
     bool ok = true;
-    for (int i = 1; i < p->h->size; i++) ok = p->h->call->send(i, p->tag + (int)kind, c, sizeof *c) && ok;
+    for (int i = 1; i < p->h->size; i++)
+        ok = p->h->call->send(i, p->tag + (int)kind, c, sizeof *c) && ok;
     return ok;
 }
 
@@ -243,7 +250,8 @@ static bool judge_wave(struct post *p)
 static bool count(struct post *p, bool idle, bool failed)
 {
     if (p->answers >= 0 && p->answers == p->h->size) return judge_wave(p);
-    /* A process answers between two turns. One that is silent for very long has gone, and with it its ranks. */
+    /* A process answers between two turns. One that is silent for very long has gone, and with it
+     * its ranks. */
     if (p->answers >= 0) return host_seconds() - p->asked < PATIENCE_S;
     if (!idle && !failed) return true;
     p->wave = (struct count){.wave = p->wave.wave + 1};
@@ -254,7 +262,8 @@ static bool count(struct post *p, bool idle, bool failed)
     return send_all(p, KIND_ASK, &ask);
 }
 
-enum post_state post_serve(struct post *p, bool idle, bool failed, post_take_fn *take, void *context, bool *busy)
+enum post_state post_serve(struct post *p, bool idle, bool failed, post_take_fn *take,
+                           void *context, bool *busy)
 {
     *busy = false;
     bool ok = send_bags(p, busy) && receive(p, idle, failed, take, context, busy);

@@ -1,5 +1,5 @@
-/* published.c - which elements of outputs the ranks of a process published, to be sent when the run has ended
- * (shared.h). */
+/* published.c - which elements of outputs the ranks of a process published, to be sent when the run
+ * has ended (shared.h). */
 #include <stdlib.h>
 
 #include "vp/shared.h"

@@ -18,7 +18,10 @@ void world_make_ranks(struct world *w, uint64_t seed)
     const int row = w->nstage + 1;
     for (int i = w->first; i < w->first + w->nown; i++) {
         struct vp *v = &w->vp[i];
-        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank, .noutput = w->load->noutput,
+        v->comm = (struct comm){.type = &vp_comm_type,
+                                .rank = i,
+                                .size = w->nrank,
+                                .noutput = w->load->noutput,
                                 .output = w->load->output};
         v->world = w;
         /* Rows belong to the result and outlive the ranks. */

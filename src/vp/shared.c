@@ -13,7 +13,16 @@
 #include "vp/matching.h"
 #include "vp/team.h"
 
-enum tag { TAG_END = 300, TAG_SIZES, TAG_TIMES, TAG_STAGES, TAG_DIGESTS, TAG_LOADS, TAG_OUTPUT, TAG_WAITING };
+enum tag {
+    TAG_END = 300,
+    TAG_SIZES,
+    TAG_TIMES,
+    TAG_STAGES,
+    TAG_DIGESTS,
+    TAG_LOADS,
+    TAG_OUTPUT,
+    TAG_WAITING
+};
 
 /* Sums decide, so that all processes come to the same end. */
 enum shared_end shared_end(struct world *w)
@@ -25,7 +34,7 @@ enum shared_end shared_end(struct world *w)
     return v[1] ? SHARED_FAILED : v[0] == w->nrank ? SHARED_FINISHED : SHARED_DEADLOCK;
 }
 
-/* --- outputs ----------------------------------------------------------------------------------- */
+/* --- outputs ---------------------------------------------------------------------------------- */
 
 /* Which elements, then the elements themselves as one array. */
 static bool send_outputs(struct world *w)
@@ -40,9 +49,10 @@ static bool send_outputs(struct world *w)
         memcpy(x + at, w->load->output[p->interval[i].output].x + p->interval[i].first,
                (size_t)p->interval[i].count * sizeof *x);
     int64_t sizes[2] = {p->n, total};
-    const bool ok = hosts_copy_out(h, 0, TAG_SIZES, sizes, sizeof sizes) &&
-                    hosts_copy_out(h, 0, TAG_OUTPUT, p->interval, (size_t)p->n * sizeof *p->interval) &&
-                    hosts_copy_out(h, 0, TAG_OUTPUT, x, (size_t)total * sizeof *x);
+    const bool ok =
+        hosts_copy_out(h, 0, TAG_SIZES, sizes, sizeof sizes) &&
+        hosts_copy_out(h, 0, TAG_OUTPUT, p->interval, (size_t)p->n * sizeof *p->interval) &&
+        hosts_copy_out(h, 0, TAG_OUTPUT, x, (size_t)total * sizeof *x);
     free(x);
     return ok;
 }
@@ -56,8 +66,9 @@ static bool receive_outputs(struct world *w, int from)
     struct interval *interval = calloc((size_t)sizes[0] + 1, sizeof *interval);
     double *x = calloc((size_t)sizes[1] + 1, sizeof *x);
     CHECK(interval && x);
-    const bool ok = hosts_copy_in(h, from, TAG_OUTPUT, interval, (size_t)sizes[0] * sizeof *interval) &&
-                    hosts_copy_in(h, from, TAG_OUTPUT, x, (size_t)sizes[1] * sizeof *x);
+    const bool ok =
+        hosts_copy_in(h, from, TAG_OUTPUT, interval, (size_t)sizes[0] * sizeof *interval) &&
+        hosts_copy_in(h, from, TAG_OUTPUT, x, (size_t)sizes[1] * sizeof *x);
     for (int64_t i = 0; ok && i < sizes[0]; at += interval[i++].count)
         memcpy(w->load->output[interval[i].output].x + interval[i].first, x + at,
                (size_t)interval[i].count * sizeof *x);
@@ -66,19 +77,21 @@ static bool receive_outputs(struct world *w, int from)
     return ok;
 }
 
-/* --- times and accounts ------------------------------------------------------------------------ */
+/* --- times and accounts ----------------------------------------------------------------------- */
 
-/* Node i's injection port is resource i; at the level that processes share, nothing else is loaded. */
+/* Node i's injection port is resource i; at the level that processes share, nothing else is
+ * loaded. */
 static bool send_part(struct world *w, const uint64_t *digest)
 {
     const struct hosts *h = w->load->hosts;
     const size_t n = (size_t)w->nown, row = (size_t)w->nstage + 1;
     int nlink;
     const struct link_load *load = net_links(w->net, &nlink);
-    bool ok = hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first, n * sizeof(int64_t)) &&
-              hosts_copy_out(h, 0, TAG_DIGESTS, digest, n * sizeof *digest) &&
-              hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
-                             n * row * sizeof *w->result->stage);
+    bool ok =
+        hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first, n * sizeof(int64_t)) &&
+        hosts_copy_out(h, 0, TAG_DIGESTS, digest, n * sizeof *digest) &&
+        hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
+                       n * row * sizeof *w->result->stage);
     for (int i = w->first; ok && nlink > 0 && i < w->first + w->nown; i++)
         ok = hosts_copy_out(h, 0, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
     return ok && send_outputs(w);
@@ -94,10 +107,11 @@ static bool receive_part(struct world *w, int from, uint64_t *digest)
     const size_t n = (size_t)(end - first);
     /* The world's own loads, which copy_links copies later. */
     struct link_load *load = (struct link_load *)net_links(w->net, &nlink);
-    bool ok = hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first, n * sizeof(int64_t)) &&
-              hosts_copy_in(h, from, TAG_DIGESTS, digest + first, n * sizeof *digest) &&
-              hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
-                            n * row * sizeof *w->result->stage);
+    bool ok =
+        hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first, n * sizeof(int64_t)) &&
+        hosts_copy_in(h, from, TAG_DIGESTS, digest + first, n * sizeof *digest) &&
+        hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
+                      n * row * sizeof *w->result->stage);
     for (int i = first; ok && nlink > 0 && i < end; i++)
         ok = hosts_copy_in(h, from, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
     return ok && receive_outputs(w, from);
@@ -115,7 +129,8 @@ static void add_up(struct world *w, const uint64_t *digest)
     for (int i = 0; i < w->nrank; i++) {
         struct stage_time *row = r->stage + (size_t)i * ((size_t)w->nstage + 1);
         row[w->nstage].wait_ps += r->makespan_ps - r->finish_ps[i];
-        for (int k = 0; k < w->nstage; k++) r->messages += row[k].messages, r->bytes += row[k].bytes;
+        for (int k = 0; k < w->nstage; k++)
+            r->messages += row[k].messages, r->bytes += row[k].bytes;
     }
 }
 
@@ -148,7 +163,7 @@ bool shared_collect(struct world *w)
     return true;
 }
 
-/* --- deadlocks --------------------------------------------------------------------------------- */
+/* --- deadlocks -------------------------------------------------------------------------------- */
 
 /* What deadlock_explain says of a rank that waits. */
 struct waiting {
@@ -160,7 +175,8 @@ struct waiting {
 /* Texts are copied: addresses of one process mean nothing in another. */
 static void describe(const struct vp *v, struct waiting *x)
 {
-    *x = (struct waiting){.rank = v->comm.rank, .stage = v->stage, .what = v->waiting_for, .line = v->comm.line};
+    *x = (struct waiting){
+        .rank = v->comm.rank, .stage = v->stage, .what = v->waiting_for, .line = v->comm.line};
     if (v->comm.file) strncpy(x->file, v->comm.file, sizeof x->file - 1);
     if (!v->waiting) return;
     x->request = *v->waiting;
@@ -183,7 +199,8 @@ static void put_in_place(struct world *w, const struct waiting *x)
     v->world = w;
 }
 
-/* Ranks that have finished are not sent: in fresh memory they wait for nothing, which is what they are asked for. */
+/* Ranks that have finished are not sent: in fresh memory they wait for nothing, which is what they
+ * are asked for. */
 bool shared_gather_waiting(struct world *w)
 {
     const struct hosts *h = w->load->hosts;
@@ -204,6 +221,7 @@ bool shared_gather_waiting(struct world *w)
     /* Every rank here tells the same count of a barrier. */
     for (int i = w->first; i < w->first + w->nown; i++) w->vp[i].world->barrier_count = (int)inside;
     for (int from = 1; ok && from < h->size; from++)
-        while ((ok = hosts_copy_in(h, from, TAG_WAITING, &x, sizeof x)) && x.rank >= 0) put_in_place(w, &x);
+        while ((ok = hosts_copy_in(h, from, TAG_WAITING, &x, sizeof x)) && x.rank >= 0)
+            put_in_place(w, &x);
     return ok;
 }

@@ -1,11 +1,11 @@
 /* team.c - the threads of a run, and their turns with the shares of its ranks (team.h).
  *
- * A share is an actor: a ring of ready ranks and an inbox of messages from other shares. It is idle,
- * queued at a thread, or run by one. Threads take shares from the front of their own queue and, when
- * that is empty, from the back of others'. A turn of a share is bounded and it then goes to the end
- * of the queue: so no share runs far ahead of those that read what it sends, and messages in flight
- * stay about as many as on one thread. The run is over when every share is idle: nobody can go on,
- * and nothing is on its way. */
+ * A share is an actor: a ring of ready ranks and an inbox of messages from other shares. It is
+ * idle, queued at a thread, or run by one. Threads take shares from the front of their own queue
+ * and, when that is empty, from the back of others'. A turn of a share is bounded and it then goes
+ * to the end of the queue: so no share runs far ahead of those that read what it sends, and
+ * messages in flight stay about as many as on one thread. The run is over when every share is idle:
+ * nobody can go on, and nothing is on its way. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -15,7 +15,7 @@
 #include "spec/topology_list.h"
 #include "vp/team_parts.h"
 
-/* --- threads ----------------------------------------------------------------------------------- */
+/* --- threads ---------------------------------------------------------------------------------- */
 
 /* Every thread adds what its turns have ended; whoever shows it reads the sum. */
 static void tell_heartbeat(struct share *s)
@@ -58,8 +58,8 @@ static void run_share(struct worker *k, struct share *s)
         return;
     }
     delay(k);
-    /* More to do, or new messages since it looked: to the end of the queue. Else it is idle, and the
-     * last one that is ends the run. */
+    /* More to do, or new messages since it looked: to the end of the queue. Else it is idle, and
+     * the last one that is ends the run. */
     int running = RUNNING;
     if (w->ready_count > 0 || !atomic_compare_exchange_strong(&s->state, &running, IDLE)) {
         atomic_store(&s->state, QUEUED);
@@ -144,7 +144,7 @@ static void *work(void *argument)
     return NULL;
 }
 
-/* --- one run ----------------------------------------------------------------------------------- */
+/* --- one run ---------------------------------------------------------------------------------- */
 
 /* Shares of 2^shift ranks, so that a rank's share is found by a shift. */
 static int shift_of(int nrank, int parts)
@@ -170,8 +170,9 @@ void team_part(const struct world_load *load, int process, int *first, int *end)
     if (process + 1 < size) *end = (int)((process + 1) * nshare / size) << shift;
 }
 
-/* Each share is the whole world but for its own ring of ready ranks, pool, and account of what ended. Tables of the
- * network are common: what is written in them belongs to one node, and so to one rank. */
+/* Each share is the whole world but for its own ring of ready ranks, pool, and account of what
+ * ended. Tables of the network are common: what is written in them belongs to one node, and so to
+ * one rank. */
 static void make_shares(struct team *t)
 {
     struct world *w = t->world;
@@ -225,8 +226,8 @@ static void go(struct team *t)
     for (int i = 1; i < nthread; i++) pthread_join(t->worker[i].thread, NULL);
 }
 
-/* What the shares know becomes the world's. A deadlock is explained from the ranks' own states, which
- * are those of a run on one thread: whoever can go on does, in any order. */
+/* What the shares know becomes the world's. A deadlock is explained from the ranks' own states,
+ * which are those of a run on one thread: whoever can go on does, in any order. */
 static void gather(struct team *t)
 {
     struct world *w = t->world;
@@ -265,9 +266,11 @@ static void destroy(struct team *t)
     pthread_cond_destroy(&t->news);
 }
 
-/* In the order in which a user would change it: the program, the machine, what is recorded. The conditions are those
- * under which the ranks are a Kahn network (team.h), and what keeps its records in the order of events. */
-const char *world_alone(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record)
+/* In the order in which a user would change it: the program, the machine, what is recorded. The
+ * conditions are those under which the ranks are a Kahn network (team.h), and what keeps its
+ * records in the order of events. */
+const char *world_alone(const struct machine_spec *m, const struct world_load *load,
+                        const struct record_spec *record)
 {
     if (load->foreign) return "the program is not a built-in one";
     if (load->timed) return "receives from anybody and tests depend on time";
@@ -275,14 +278,15 @@ const char *world_alone(const struct machine_spec *m, const struct world_load *l
         return "messages wait for each other at links (network.level loggp has none)";
     if (m->topology.processors_per_node > 1) return "processors of a node share a port";
     if (m->software.kernel_server) return "one kernel server serves the whole machine";
-    if (!software_all_eager(&m->software, load->largest_message)) return "large messages shake hands";
+    if (!software_all_eager(&m->software, load->largest_message))
+        return "large messages shake hands";
     if (m->noise.background_load > 0) return "other jobs' traffic follows time";
     if (record->spans) return "a timeline is recorded";
     return record->path ? "a critical path is recorded" : NULL;
 }
 
-/* From the outside in, and back: shares, threads, post. Every own share is queued once, since all ranks are ready at
- * time 0; from then on only what comes queues it. */
+/* From the outside in, and back: shares, threads, post. Every own share is queued once, since all
+ * ranks are ready at time 0; from then on only what comes queues it. */
 void team_run(struct world *w, uint64_t seed)
 {
     const int most = w->nrank < MOST_THREADS ? w->nrank : MOST_THREADS;

@@ -1,4 +1,5 @@
-/* team_barrier.c - the machine's barrier: a maximum over ranks, shares, processes (team_parts.h). */
+/* team_barrier.c - the machine's barrier: a maximum over ranks, shares, processes
+ * (team_parts.h). */
 #include "vp/team_parts.h"
 
 /* It is left at the latest time at which a rank entered: a maximum, first within each share. The
@@ -19,7 +20,8 @@ void team_enter_process(struct team *t, sim_ps latest)
     const struct hosts *h = t->world->load->hosts;
     pthread_mutex_lock(&t->lock);
     if (latest > t->latest_process) t->latest_process = latest;
-    const bool complete = ++t->processes == (h->size < t->nshare ? h->size : t->nshare); /* those with ranks */
+    /* those with ranks */
+    const bool complete = ++t->processes == (h->size < t->nshare ? h->size : t->nshare);
     const sim_ps time = t->latest_process + t->world->software.barrier;
     if (complete) t->processes = 0, t->latest_process = 0;
     pthread_mutex_unlock(&t->lock);

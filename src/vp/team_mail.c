@@ -1,4 +1,5 @@
-/* team_mail.c - messages to other shares, in batches, and to other processes, as letters (team_parts.h). */
+/* team_mail.c - messages to other shares, in batches, and to other processes, as letters
+ * (team_parts.h). */
 #include <stdlib.h>
 
 #include "base/check.h"

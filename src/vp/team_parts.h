@@ -1,7 +1,8 @@
-/* team_parts.h - shares of ranks, the threads that run them, and what goes between them: the insides of team.h.
+/* team_parts.h - shares of ranks, the threads that run them, and what goes between them: the
+ * insides of team.h.
  *
- * team_queue.c: which share is next; team_mail.c: messages to other shares and processes; team_barrier.c: the machine's
- * barrier; team.c: threads and turns. */
+ * team_queue.c: which share is next; team_mail.c: messages to other shares and processes;
+ * team_barrier.c: the machine's barrier; team.c: threads and turns. */
 #ifndef VP_TEAM_PARTS_H
 #define VP_TEAM_PARTS_H
 
@@ -78,21 +79,23 @@ struct team {
 
 /* --- team_queue.c --- */
 
-/* team_enqueue: s, which is QUEUED, at the end of its thread's queue. team_look_around: the next share for k, of its
- * own queue or of another; NULL: none waits. team_next_share: the same, waiting; NULL: the run is over. */
+/* team_enqueue: s, which is QUEUED, at the end of its thread's queue. team_look_around: the next
+ * share for k, of its own queue or of another; NULL: none waits. team_next_share: the same,
+ * waiting; NULL: the run is over. */
 void team_enqueue(struct team *t, struct share *s);
 struct share *team_look_around(struct worker *k);
 struct share *team_next_share(struct worker *k);
 
-/* team_notify: something has come for s. Whoever calls this runs a share, or serves the post, so that the run is not
- * over meanwhile. team_wake_all: threads that sleep look whether the run is over. */
+/* team_notify: something has come for s. Whoever calls this runs a share, or serves the post, so
+ * that the run is not over meanwhile. team_wake_all: threads that sleep look whether the run is
+ * over. */
 void team_notify(struct team *t, struct share *s);
 void team_wake_all(struct team *t);
 
 /* --- team_mail.c --- */
 
-/* batch_new: an empty one. team_push: hand b over to share `to`. team_send_out: what the turn of s has collected for
- * others. team_take_in: what has come for s, matched with its receives. */
+/* batch_new: an empty one. team_push: hand b over to share `to`. team_send_out: what the turn of s
+ * has collected for others. team_take_in: what has come for s, matched with its receives. */
 struct batch *batch_new(void);
 void team_push(struct team *t, struct share *to, struct batch *b);
 void team_send_out(struct team *t, struct share *s);
@@ -100,8 +103,9 @@ void team_take_in(struct share *s);
 
 /* --- team_barrier.c --- */
 
-/* team_barrier: v enters the machine's barrier; it returns when v may leave. team_leave_barrier: wake the ranks of s
- * when one has ended. team_enter_process: one more process is in it as a whole; team_release: all are. */
+/* team_barrier: v enters the machine's barrier; it returns when v may leave. team_leave_barrier:
+ * wake the ranks of s when one has ended. team_enter_process: one more process is in it as a whole;
+ * team_release: all are. */
 void team_barrier(struct vp *v);
 void team_leave_barrier(struct team *t, struct share *s);
 void team_enter_process(struct team *t, sim_ps latest);

@@ -1,10 +1,11 @@
-/* team_queue.c - which share a thread runs next, and when nobody has anything to do (team_parts.h). */
+/* team_queue.c - which share a thread runs next, and when nobody has anything to do
+ * (team_parts.h). */
 #include <sched.h>
 
 #include "vp/team_parts.h"
 
-/* A thread that sleeps has counted itself before it looked at the queues for the last time, and this
- * one looks for sleepers after it has queued: one of the two sees the other. */
+/* A thread that sleeps has counted itself before it looked at the queues for the last time, and
+ * this one looks for sleepers after it has queued: one of the two sees the other. */
 void team_enqueue(struct team *t, struct share *s)
 {
     struct worker *k = &t->worker[s->home];
@@ -36,7 +37,8 @@ static struct share *dequeue(struct team *t, struct worker *k, bool own)
     return s;
 }
 
-/* Others' queues in a fixed order, beginning with the next thread: thieves then mostly look at different ones. */
+/* Others' queues in a fixed order, beginning with the next thread: thieves then mostly look at
+ * different ones. */
 struct share *team_look_around(struct worker *k)
 {
     struct team *t = k->team;
@@ -52,11 +54,12 @@ struct share *team_look_around(struct worker *k)
 /* Where processes share the run, only the post knows that nothing is under way. */
 static bool over(struct team *t)
 {
-    return atomic_load(&t->stop) || (t->post ? atomic_load(&t->over) : atomic_load(&t->active) == 0);
+    return atomic_load(&t->stop) ||
+           (t->post ? atomic_load(&t->over) : atomic_load(&t->active) == 0);
 }
 
-/* The next share to run, NULL: the run is over. A short look for something new first: it comes within
- * microseconds, and going to sleep takes as long. */
+/* The next share to run, NULL: the run is over. A short look for something new first: it comes
+ * within microseconds, and going to sleep takes as long. */
 struct share *team_next_share(struct worker *k)
 {
     enum { LOOKS = 400 };
@@ -84,7 +87,8 @@ void team_wake_all(struct team *t)
     pthread_mutex_unlock(&t->lock);
 }
 
-/* Something has come for s. Whoever calls this runs a share, so that `active` is not 0 meanwhile. */
+/* Something has come for s. Whoever calls this runs a share, so that `active` is not 0
+ * meanwhile. */
 void team_notify(struct team *t, struct share *s)
 {
     int state = atomic_load(&s->state);

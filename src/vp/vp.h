@@ -1,9 +1,9 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
- * Files: world.c builds and runs, team.c on several threads; vp_comm.c is comm.h for a virtual processor; clock.c its
- * time; mailbox.c matches messages, matching.c, poll.c and timer.c where time decides; pool.c keeps them; launch.c
- * sends; rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links;
- * deadlock.c and failure.c explain. */
+ * Files: world.c builds and runs, team.c on several threads; vp_comm.c is comm.h for a virtual
+ * processor; clock.c its time; mailbox.c matches messages, matching.c, poll.c and timer.c where
+ * time decides; pool.c keeps them; launch.c sends; rendezvous.c carries large ones; server.c is the
+ * shared kernel server; background.c loads the links; deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
 
@@ -27,12 +27,18 @@
 #include "vp/message.h"
 #include "vp/world.h"
 
-/* Lanes of the events that this room posts before the starts of messages at the same time: messages that arrive for
- * receives from anybody, such receives, looks at the clock, others' services. */
+/* Lanes of the events that this room posts before the starts of messages at the same time: messages
+ * that arrive for receives from anybody, such receives, looks at the clock, others' services. */
 enum { LANE_ARRIVAL = NET_LANE_START - 5, LANE_POST, LANE_POLL, LANE_SERVER, LANE_BACKGROUND };
 
 enum waiting_for {
-    WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER, WAITING_ANY, WAITING_POLL
+    WAITING_NOTHING,
+    WAITING_RECEIVE,
+    WAITING_SEND,
+    WAITING_BARRIER,
+    WAITING_SERVER,
+    WAITING_ANY,
+    WAITING_POLL
 };
 
 struct vp {
@@ -47,7 +53,8 @@ struct vp {
     struct comm_request *posted, **posted_end;    /* receives without a message, in order */
     struct message *unexpected, **unexpected_end; /* messages without a receive, in order */
     struct matching *matching;                    /* timed programs: instead of `unexpected` */
-    uint32_t sent;                                /* messages so far: the lower half of their numbers */
+    /* messages so far: the lower half of their numbers */
+    uint32_t sent;
     int node, processor;
     uint64_t digest;     /* of what it received and when */
     sim_ps server_start; /* when the kernel server began with it */
@@ -75,14 +82,17 @@ struct world {
     bool shared_channel, eager_only, noisy;
     bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
     bool broken; /* a process of the job does not answer */
-    struct published *published; /* by its ranks, where processes share the run (shared.h); NULL: not kept */
+    /* by its ranks, where processes share the run (shared.h); NULL: not kept */
+    struct published *published;
     int *ready; /* (nown) ring of ranks that can go on */
     int ready_head, ready_count;
     struct message_pool *pool; /* of the host thread */
-    struct team *team;         /* of several threads: each share of the ranks has its world (team.h); NULL: one */
+    /* of several threads: each share of the ranks has its world (team.h); NULL: one */
+    struct team *team;
     int first, nown;           /* its ranks: first .. first + nown - 1 */
     void (*arrived)(struct message *m);    /* what the end of a message's trip means */
-    void (*share_barrier)(struct vp *v);   /* of a share: v enters the machine's barrier; NULL: one thread */
+    /* of a share: v enters the machine's barrier; NULL: one thread */
+    void (*share_barrier)(struct vp *v);
 
     struct path_log *path; /* what binds (path.h), NULL unless recorded; owned */
     uint32_t barrier_path; /* of barrier_latest, then of barrier_release */
@@ -91,7 +101,8 @@ struct world {
     const struct vp *late; /* the rank whose clock would pass the end of time, NULL: none */
     int64_t background_events; /* of other jobs' traffic, pending */
     sim_ps server_free; /* kernel server */
-    uint32_t server_path; /* of the message end that it served last: when it began; whose that was */
+    /* of the message end that it served last: when it began; whose that was */
+    uint32_t server_path;
     int served_rank, served_stage;
     int64_t server_bytes, span_capacity;
     const struct world_load *load;
@@ -108,30 +119,35 @@ void vp_notify(struct vp *v, struct comm_request *r, sim_ps time);
 /* vp_block: leave the fiber until somebody wakes `v`. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);
 
-/* vp_time_out: what `v` does next ends after PS_LAST: the run has failed, and this never returns to the rank. */
+/* vp_time_out: what `v` does next ends after PS_LAST: the run has failed, and this never returns to
+ * the rank. */
 _Noreturn void vp_time_out(struct vp *v);
 
 /* vp_stage_time: the row of the stage in progress. */
 static inline struct stage_time *vp_stage_time(struct vp *v) { return &v->stages[v->stage]; }
 
-/* vp_advance: the clock becomes `time`. One that passes the end of time stops there: its rank goes no further. */
+/* vp_advance: the clock becomes `time`. One that passes the end of time stops there: its rank goes
+ * no further. */
 static inline void vp_advance(struct vp *v, sim_ps time)
 {
     if (__builtin_expect(time > PS_LAST, 0)) vp_time_out(v);
     v->clock = time;
 }
 
-/* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
- * stage's wait and contention. No effect when the clock is later. */
+/* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed
+ * anyway; charged to the stage's wait and contention. No effect when the clock is later. */
 void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended);
 
-/* vp_span: record [begin, end) of `v`; neighbours of one kind are joined. For runs that record spans. */
-void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message);
+/* vp_span: record [begin, end) of `v`; neighbours of one kind are joined. For runs that record
+ * spans. */
+void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes,
+             int64_t message);
 
 /* --- launch.c --- */
 
-/* vp_launch: hand m over to the network, or to the channel that both processors of one node share; m->net holds nodes,
- * bytes and ready time. `from` and `to` are the ranks at the ends of this trip. */
+/* vp_launch: hand m over to the network, or to the channel that both processors of one node share;
+ * m->net holds nodes, bytes and ready time. `from` and `to` are the ranks at the ends of this
+ * trip. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to);
 
 /* vp_comm_type: comm.h as a virtual processor implements it (vp_comm.c). */
@@ -142,8 +158,8 @@ extern const struct comm_type vp_comm_type;
  * charged as overhead. */
 sim_ps server_pass(struct vp *v, int64_t bytes);
 
-/* background_start (background.c): begin the seeded traffic of others on the links, when the machine
- * has it; it ends with the ranks. It acts at levels that can occupy a link (net_occupy). */
+/* background_start (background.c): begin the seeded traffic of others on the links, when the
+ * machine has it; it ends with the ranks. It acts at levels that can occupy a link (net_occupy). */
 void background_start(struct world *w, uint64_t seed);
 
 #endif

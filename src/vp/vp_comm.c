@@ -1,7 +1,7 @@
 /* vp_comm.c - comm.h made of fibers, mailboxes, the network and a clock of one's own.
  *
- * Every advance of a clock is charged to one component of one stage, so that the components of a rank add up to its
- * finishing time without remainder. */
+ * Every advance of a clock is charged to one component of one stage, so that the components of a
+ * rank add up to its finishing time without remainder. */
 #include <string.h>
 
 #include "base/check.h"
@@ -32,7 +32,8 @@ static void charge_send(struct vp *v, const struct message *m)
     vp_advance(v, v->clock + cost);
     vp_path(v, PATH_SEND, served, m->bytes);
     vp_stage_time(v)->send_ps += cost;
-    if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, m->net.id);
+    if (w->record->spans)
+        vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, m->net.id);
 }
 
 /* The same at the other end, with costs of its own. */
@@ -49,16 +50,20 @@ static void charge_receive(struct vp *v, const struct message *m)
     vp_advance(v, v->clock + cost);
     vp_path(v, PATH_RECV, served, m->bytes);
     vp_stage_time(v)->recv_ps += cost;
-    if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, m->net.id);
+    if (w->record->spans)
+        vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, m->net.id);
 }
 
-static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data, int64_t bytes)
+static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data,
+                                    int64_t bytes)
 {
     struct world *w = v->world;
     /* Arguments come from programs, also somebody else's. */
-    if (dst < 0 || dst >= w->nrank) vp_misuse(v, "a message to rank %d: there are 0 .. %d", dst, w->nrank - 1);
+    if (dst < 0 || dst >= w->nrank)
+        vp_misuse(v, "a message to rank %d: there are 0 .. %d", dst, w->nrank - 1);
     if (tag < 0 || bytes < 0)
-        vp_misuse(v, "a message of %lld bytes with tag %lld to rank %d", (long long)bytes, (long long)tag, dst);
+        vp_misuse(v, "a message of %lld bytes with tag %lld to rank %d", (long long)bytes,
+                  (long long)tag, dst);
     CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
     /* comm.h copies what is sent: the program may change its buffer at once, whatever the
      * protocol. */
@@ -88,7 +93,8 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
 
 /* An eager message needs nothing of its receiver, so its request is complete now; any
  * other shakes hands. */
-static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
+static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                     struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
     struct world *w = v->world;
@@ -103,12 +109,13 @@ static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int
 }
 
 /* Always with a hand-shake, whatever the size: its end means that a receive has matched. */
-static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
-                                 struct comm_request *r)
+static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const void *data,
+                                 int64_t bytes, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
-    if (v->world->eager_only) vp_misuse(v, "a synchronous send in a program that has promised to do without it "
-                                       "(a kernel in one file declares .wildcards = 1)");
+    if (v->world->eager_only)
+        vp_misuse(v, "a synchronous send in a program that has promised to do without it "
+                     "(a kernel in one file declares .wildcards = 1)");
     struct message *m = make_message(v, dst, tag, data, bytes);
     m->synchronous = 1;
     rendezvous_send(v, m, r);
@@ -123,12 +130,13 @@ static void post(struct vp *v, struct comm_request *r)
 }
 
 /* The size is exact: kernels know what they expect. */
-static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
+static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes,
+                     struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
     if (src < 0 || src >= v->world->nrank || tag < 0 || bytes < 0)
-        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d", (long long)bytes,
-                  (long long)tag, src, v->world->nrank - 1);
+        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d",
+                  (long long)bytes, (long long)tag, src, v->world->nrank - 1);
     *r = (struct comm_request){.buffer = buffer,
                                .bytes = bytes,
                                .capacity = bytes,
@@ -141,13 +149,13 @@ static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t
     post(v, r);
 }
 
-static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer, int64_t capacity,
-                              struct comm_request *r)
+static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer,
+                              int64_t capacity, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
     if (src < COMM_ANY_SOURCE || src >= v->world->nrank || tag < 0 || capacity < 0)
-        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d", (long long)capacity,
-                  (long long)tag, src, v->world->nrank - 1);
+        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d",
+                  (long long)capacity, (long long)tag, src, v->world->nrank - 1);
     /* Only matching in simulated time knows who came first. */
     if (src < 0 && !v->matching)
         vp_misuse(v, "a receive from any source in a program that has promised to do without it "
@@ -181,11 +189,13 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     r->detail = NULL;
 }
 
-/* What holds the sender of a synchronous message is its software: it counts as sending, whatever delays the data. */
+/* What holds the sender of a synchronous message is its software: it counts as sending, whatever
+ * delays the data. */
 static void finish_synchronous(struct vp *v, struct comm_request *r)
 {
     const sim_ps time = (sim_ps)(intptr_t)r->detail, held = time > v->clock ? time - v->clock : 0;
-    if (held && v->world->record->spans) vp_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
+    if (held && v->world->record->spans)
+        vp_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
     vp_stage_time(v)->send_ps += held;
     vp_path_join(v, r->path);
     vp_advance(v, v->clock + held);
@@ -237,8 +247,9 @@ static void enter_hardware_barrier(struct vp *v)
     } else {
         w->barrier_release = w->barrier_latest + w->software.barrier;
         if (w->path)
-            w->barrier_path = path_add(w->path, path_at(w->path, w->barrier_path, w->barrier_latest),
-                                       w->barrier_release, PATH_BARRIER, -1, v->stage, -1, 1);
+            w->barrier_path =
+                path_add(w->path, path_at(w->path, w->barrier_path, w->barrier_latest),
+                         w->barrier_release, PATH_BARRIER, -1, v->stage, -1, 1);
         w->barrier_count = 0;
         w->barrier_latest = 0;
         for (int i = 0; i < w->nrank; i++)
@@ -319,8 +330,8 @@ static void vp_publish(struct comm *c, int output, int64_t first, int64_t n, con
 {
     const struct comm_output *o = output >= 0 && comm_wanted(c, output) ? &c->output[output] : NULL;
     if (output < 0 || (o && (first < 0 || n < 0 || first > o->n - n)))
-        vp_misuse((struct vp *)c, "elements %lld .. %lld of output %d, which has %lld", (long long)first,
-                  (long long)(first + n - 1), output, o ? (long long)o->n : 0LL);
+        vp_misuse((struct vp *)c, "elements %lld .. %lld of output %d, which has %lld",
+                  (long long)first, (long long)(first + n - 1), output, o ? (long long)o->n : 0LL);
     comm_publish_here(c, output, first, n, data);
     struct world *w = ((struct vp *)c)->world;
     if (w->published && o) shared_published(w, output, first, n);

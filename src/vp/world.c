@@ -109,7 +109,8 @@ static int64_t stack_bytes(const struct world *w)
 /* What to do depends on whose program it is. */
 static void stack_text(const struct world *w, int rank, char *text, size_t size)
 {
-    snprintf(text, size, "rank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s", rank,
+    snprintf(text, size,
+             "rank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s", rank,
              w->nrank, (long long)stack_bytes(w) / 1024,
              w->load->foreign ? ".stack_bytes in the program's declaration gives every rank more"
                               : "fewer bodies for each rank, thus more ranks, need less");
@@ -142,8 +143,9 @@ static void collect(struct world *w)
     r->switches = fiber_pool_switches(w->fibers);
 }
 
-/* How deep stacks have become. Of very many ranks not every one has a guard page below its stack: one
- * that went beyond has written over its neighbour's, and what the run has found is not worth much. */
+/* How deep stacks have become. Of very many ranks not every one has a guard page below its stack:
+ * one that went beyond has written over its neighbour's, and what the run has found is not worth
+ * much. */
 static void measure_stacks(struct world *w)
 {
     struct run_result *r = w->result;
@@ -236,7 +238,8 @@ static void end_shared(struct world *w)
     if (end != SHARED_DEADLOCK) forget_parts(w);
     r->status = end == SHARED_DEADLOCK ? RUN_DEADLOCK : RUN_FAILED;
     r->job_broken = end == SHARED_BROKEN;
-    if (r->job_broken) text_copy(r->text, sizeof r->text, "a process of the job has ended, or does not answer");
+    if (r->job_broken)
+        text_copy(r->text, sizeof r->text, "a process of the job has ended, or does not answer");
 }
 
 /* Host time covers ranks and events, not building. */
@@ -258,7 +261,8 @@ static void run(struct world *w, uint64_t seed)
         end_shared(w);
         return;
     }
-    if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
+    if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers)
+        find_leftovers(w);
     if (w->nfinished == w->nrank && !w->failed) measure_stacks(w);
     if (w->nfinished == w->nrank && !w->failed) {
         collect(w);
@@ -276,8 +280,9 @@ static void run(struct world *w, uint64_t seed)
     r->status = deadlock ? RUN_DEADLOCK : RUN_FAILED;
 }
 
-bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
-               uint64_t seed, struct arena *a, struct run_result *out, struct err *e)
+bool world_run(const struct machine_spec *m, const struct world_load *load,
+               const struct record_spec *record, uint64_t seed, struct arena *a,
+               struct run_result *out, struct err *e)
 {
     struct message_pool pool = {0};
     struct world w = {
@@ -297,7 +302,8 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
         /* Then a node's messages come in order and the network may use fewer events. */
-        .eager_only = (!load->timed || load->no_synchronous) && software_all_eager(&m->software, load->largest_message),
+        .eager_only = (!load->timed || load->no_synchronous) &&
+                      software_all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
     struct published published = {.lock = PTHREAD_MUTEX_INITIALIZER};

@@ -1,7 +1,7 @@
 /* world.h - a machine with its network, clock and virtual processors, built for one run.
  *
- * A virtual processor is a fiber with its own clock. Computing and sending advance the clock without an event; only
- * waiting for something not yet known switches fibers. */
+ * A virtual processor is a fiber with its own clock. Computing and sending advance the clock
+ * without an event; only waiting for something not yet known switches fibers. */
 #ifndef VP_WORLD_H
 #define VP_WORLD_H
 
@@ -21,22 +21,31 @@ struct world_load {
     world_program *program; /* of every rank */
     void *context;          /* handed to it; borrowed */
     int nstage;
-    const char *const *stage_name; /* (nstage); one more, "end", is added for idling until the makespan */
-    int64_t largest_message;       /* bytes; a promise (CHECK), -1: none. When every message is eager, sends of a node
-                                      come in order and some levels need fewer events, with the same times */
+    const char *const
+        *stage_name;         /* (nstage); one more, "end", is added for idling until the makespan */
+    int64_t largest_message; /* bytes; a promise (CHECK), -1: none. When every message is eager,
+                                sends of a node come in order and some levels need fewer events,
+                                with the same times */
     const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
     int noutput;
     struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */
     int64_t stack_bytes;           /* of each rank, 0: what built-in programs need */
-    bool timed;     /* the program may use wildcards, tests, cancel, probes and synchronous sends (comm_match.h) */
-    bool no_synchronous; /* none of its sends is synchronous: as largest_message, a promise that saves events */
+    /* the program may use wildcards, tests, cancel, probes and synchronous sends (comm_match.h) */
+    bool timed;
+    /* none of its sends is synchronous: as largest_message, a promise that saves events */
+    bool no_synchronous;
     bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
-    bool leftovers; /* of a foreign program: messages that nobody has received at its end are no failure */
-    int threads;     /* host threads; 0: one. More act where world_alone lets them, and on no result */
-    const struct hosts *hosts; /* processes that share the run, each with a part of the ranks; NULL: only this one */
+    /* of a foreign program: messages that nobody has received at its end are no failure */
+    bool leftovers;
+    /* host threads; 0: one. More act where world_alone lets them, and on no result */
+    int threads;
+    /* processes that share the run, each with a part of the ranks; NULL: only this one */
+    const struct hosts *hosts;
     int job_run;               /* number of the run among those of these processes */
-    uint64_t delays; /* for tests: threads stop for a while at random, by this seed; 0: they do not */
-    const int *order; /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
+    /* for tests: threads stop for a while at random, by this seed; 0: they do not */
+    uint64_t delays;
+    /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
+    const int *order;
 };
 
 /* world_run: run a load on machine `m` to the end.
@@ -44,19 +53,22 @@ struct world_load {
  *   m            in   the machine; level, placement, software, noise as given
  *   record, seed in   what to record; seed of the noise
  *   a            in   memory of the result's arrays
- *   out          out  makespan, stages, counts, digest, spans, links, host_s, stack peak; `status` RUN_OK or
- *                     RUN_DEADLOCK with the wait-for cycle in `text`, or RUN_FAILED with what failed
+ *   out          out  makespan, stages, counts, digest, spans, links, host_s, stack peak; `status`
+ * RUN_OK or RUN_DEADLOCK with the wait-for cycle in `text`, or RUN_FAILED with what failed
  *
- *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no memory). */
-bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
-               uint64_t seed, struct arena *a, struct run_result *out, struct err *e);
+ *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no
+ * memory). */
+bool world_run(const struct machine_spec *m, const struct world_load *load,
+               const struct record_spec *record, uint64_t seed, struct arena *a,
+               struct run_result *out, struct err *e);
 
-/* world_part: the ranks *first .. *end - 1 that this process runs: all, unless load->hosts. Only process 0 then gets
- * the whole result; the others' has the status and their own ranks' part. */
+/* world_part: the ranks *first .. *end - 1 that this process runs: all, unless load->hosts. Only
+ * process 0 then gets the whole result; the others' has the status and their own ranks' part. */
 void world_part(const struct world_load *load, int *first, int *end);
 
-/* world_alone: why world_run would use one host thread for such a run, whatever load->threads says; NULL: it may use
- * several. A constant text. */
-const char *world_alone(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record);
+/* world_alone: why world_run would use one host thread for such a run, whatever load->threads says;
+ * NULL: it may use several. A constant text. */
+const char *world_alone(const struct machine_spec *m, const struct world_load *load,
+                        const struct record_spec *record);
 
 #endif

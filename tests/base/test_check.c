@@ -1,4 +1,5 @@
-/* test_check.c - a failed CHECK says where and in which run, and aborts; so do misuses of the base. */
+/* test_check.c - a failed CHECK says where and in which run, and aborts; so do misuses of the
+ * base. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -149,7 +150,8 @@ static void misuse_of_the_base_is_found(void **state)
 {
     (void)state;
     char out[2000];
-    void (*const misuses[])(void) = {json_left_open, json_value_without_key, json_two_documents, mark_released_twice};
+    void (*const misuses[])(void) = {json_left_open, json_value_without_key, json_two_documents,
+                                     mark_released_twice};
     for (size_t i = 0; i < sizeof misuses / sizeof misuses[0]; i++) {
         last_words(misuses[i], out, sizeof out);
         assert_non_null(strstr(out, "CHECK("));

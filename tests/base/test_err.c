@@ -1,4 +1,5 @@
-/* test_err.c - errors as values: the first cause wins, texts are cut and not overrun, statuses are those documented. */
+/* test_err.c - errors as values: the first cause wins, texts are cut and not overrun, statuses are
+ * those documented. */
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,10 +58,18 @@ static void exit_statuses_are_those_of_the_manual(void **state)
         enum err_kind kind;
         int status;
         const char *word;
-    } known[] = {{ERR_NONE, 0, "ok"},           {ERR_CHECK, 1, "check-failed"},   {ERR_USAGE, 64, "usage"},
-                 {ERR_DATA, 65, "bad-data"},    {ERR_NO_INPUT, 66, "no-input"},   {ERR_UNAVAILABLE, 69, "missing"},
-                 {ERR_DEADLOCK, 70, "deadlock"}, {ERR_INTERNAL, 71, "system"},    {ERR_CREATE, 73, "cannot-create"},
-                 {ERR_IO, 74, "io"},            {ERR_BUSY, 75, "busy"},           {ERR_CONFIG, 78, "config"}};
+    } known[] = {{ERR_NONE, 0, "ok"},
+                 {ERR_CHECK, 1, "check-failed"},
+                 {ERR_USAGE, 64, "usage"},
+                 {ERR_DATA, 65, "bad-data"},
+                 {ERR_NO_INPUT, 66, "no-input"},
+                 {ERR_UNAVAILABLE, 69, "missing"},
+                 {ERR_DEADLOCK, 70, "deadlock"},
+                 {ERR_INTERNAL, 71, "system"},
+                 {ERR_CREATE, 73, "cannot-create"},
+                 {ERR_IO, 74, "io"},
+                 {ERR_BUSY, 75, "busy"},
+                 {ERR_CONFIG, 78, "config"}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         assert_int_equal(err_exit_status(known[i].kind), known[i].status);
         assert_string_equal(err_word(known[i].kind), known[i].word);

@@ -40,8 +40,10 @@ static void a_nested_document_is_written(void **state)
     json_end(&j);
     json_finish(&j);
     fclose(f);
-    assert_string_equal(out, "{\"empty\": [], \"list\": [-9223372036854775808, 0.1, {\"x\": null}, {}, true, false], "
-                             "\"last\": \"\"}\n");
+    assert_string_equal(
+        out,
+        "{\"empty\": [], \"list\": [-9223372036854775808, 0.1, {\"x\": null}, {}, true, false], "
+        "\"last\": \"\"}\n");
     free(out);
 }
 
@@ -64,8 +66,10 @@ static void texts_are_escaped(void **state)
         {"a\"b\\c", "\"a\\\"b\\\\c\"\n"},
         {"\n\t\r\001\177", "\"\\n\\t\\u000d\\u0001\\u007f\"\n"},
         {"\303\244 \342\202\254 \360\237\230\200", "\"\303\244 \342\202\254 \360\237\230\200\"\n"},
-        {"\377 \300\200 \355\240\200 \342\202", "\"\\ufffd \\ufffd\\ufffd \\ufffd\\ufffd\\ufffd \\ufffd\\ufffd\"\n"},
-        {"\340\200\200\364\220\200\200\303", "\"\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\"\n"},
+        {"\377 \300\200 \355\240\200 \342\202",
+         "\"\\ufffd \\ufffd\\ufffd \\ufffd\\ufffd\\ufffd \\ufffd\\ufffd\"\n"},
+        {"\340\200\200\364\220\200\200\303",
+         "\"\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\"\n"},
     };
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
         char *out = one_text(pairs[i][0]);

@@ -28,12 +28,14 @@ static void the_peak_follows_touched_memory(void **state)
     long before = host_peak_bytes(), size = 64l << 20, slack = 4l << 20;
     volatile char *p = malloc((size_t)size);
     for (long i = 0; i < size; i += 1024) p[i] = 1;
-    assert_in_range(host_peak_bytes(), before + size - slack, before + 8 * size); /* sanitizers add their own */
+    /* sanitizers add their own */
+    assert_in_range(host_peak_bytes(), before + size - slack, before + 8 * size);
     free((void *)p);
     assert_true(host_peak_bytes() >= before + size - slack);
 }
 
-/* shown: what progress writes to standard error for `done` of 100, had it begun `age` seconds ago. */
+/* shown: what progress writes to standard error for `done` of 100, had it begun `age` seconds
+ * ago. */
 static void shown(struct progress *p, double done, double age, char *buffer, size_t size)
 {
     int ends[2];

@@ -1,4 +1,5 @@
-/* test_random.c - random streams: the published generator, independent streams, unbiased and in range. */
+/* test_random.c - random streams: the published generator, independent streams, unbiased and in
+ * range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +13,8 @@
 static void the_generator_is_xoshiro256starstar(void **state)
 {
     (void)state;
-    /* From state {1, 2, 3, 4}: the first two outputs by hand, the next by the authors' reference program. */
+    /* From state {1, 2, 3, 4}: the first two outputs by hand, the next by the authors' reference
+     * program. */
     struct random r = {{1, 2, 3, 4}};
     static const uint64_t expected[] = {11520, 0, 1509978240, 1215971899390074240};
     for (int i = 0; i < 4; i++) assert_true(random_u64(&r) == expected[i]);
@@ -23,7 +25,8 @@ static void streams_are_repeated_by_name_and_differ_between_names(void **state)
     (void)state;
     struct random a = random_make(7, 1, 2), again = random_make(7, 1, 2);
     for (int i = 0; i < 100; i++) assert_true(random_u64(&a) == random_u64(&again));
-    static const uint64_t names[][3] = {{7, 1, 2}, {7, 2, 1}, {8, 1, 2}, {7, 1, 3}, {7, 2, 2}, {0, 0, 0}, {1, 2, 7}};
+    static const uint64_t names[][3] = {{7, 1, 2}, {7, 2, 1}, {8, 1, 2}, {7, 1, 3},
+                                        {7, 2, 2}, {0, 0, 0}, {1, 2, 7}};
     for (int i = 0; i < 7; i++)
         for (int j = 0; j < i; j++) {
             struct random x = random_make(names[i][0], names[i][1], names[i][2]);
@@ -64,7 +67,8 @@ static void normal_numbers_have_the_moments_of_the_normal_law(void **state)
         m3 += x * x * x / N;
         m4 += x * x * x * x / N;
     }
-    assert_true(fabs(m1) < 0.0135 && fabs(m2 - 1) < 0.02 && fabs(m3) < 0.055 && fabs(m4 - 3) < 0.14);
+    assert_true(fabs(m1) < 0.0135 && fabs(m2 - 1) < 0.02 && fabs(m3) < 0.055 &&
+                fabs(m4 - 3) < 0.14);
 }
 
 static void integers_below_n_are_equally_likely(void **state)
@@ -79,7 +83,8 @@ static void integers_below_n_are_equally_likely(void **state)
     }
     for (int k = 0; k < 6; k++) assert_in_range(count[k], 9400, 10600);
     for (int i = 0; i < 100; i++) assert_true(random_below(&r, 1) == 0);
-    /* n = 3 2^62: a plain remainder would give the lowest third half of all cases instead of a third. */
+    /* n = 3 2^62: a plain remainder would give the lowest third half of all cases instead of a
+     * third. */
     int low = 0;
     for (int i = 0; i < 30000; i++) low += random_below(&r, UINT64_C(3) << 62) < UINT64_C(1) << 62;
     assert_in_range(low, 9400, 10600);

@@ -65,7 +65,8 @@ static void what_needs_more_than_there_is_says_what_and_how_much(void **state)
     assert_false(size_in_memory((size_t)1 << 60, "x.yaml", 7, "dims: the tables", &e));
     assert_int_equal(e.kind, ERR_CONFIG);
     assert_int_equal(e.line, 7);
-    assert_non_null(strstr(e.text, "dims: the tables would take 1.15e+09 GB of memory; this computer has "));
+    assert_non_null(
+        strstr(e.text, "dims: the tables would take 1.15e+09 GB of memory; this computer has "));
 }
 
 int main(void)

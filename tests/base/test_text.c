@@ -15,7 +15,8 @@
 #include "base/random.h"
 #include "base/text.h"
 
-static const char *const KEYS[] = {"bandwidth", "latency", "level", "torus", "mesh", "t3e-300", "hop_latency"};
+static const char *const KEYS[] = {"bandwidth", "latency", "level",      "torus",
+                                   "mesh",      "t3e-300", "hop_latency"};
 enum { NKEY = sizeof KEYS / sizeof KEYS[0] };
 
 static void the_nearest_name_is_found(void **state)
@@ -23,7 +24,7 @@ static void the_nearest_name_is_found(void **state)
     (void)state;
     assert_string_equal(text_nearest("bandwith", KEYS, NKEY), "bandwidth");  /* one missing */
     assert_string_equal(text_nearest("bandwdith", KEYS, NKEY), "bandwidth"); /* two swapped */
-    assert_string_equal(text_nearest("Latencyy", KEYS, NKEY), "latency");    /* one more, other case */
+    assert_string_equal(text_nearest("Latencyy", KEYS, NKEY), "latency"); /* one more, other case */
     assert_string_equal(text_nearest("hop-latency", KEYS, NKEY), "hop_latency");
     assert_string_equal(text_nearest("t3e300", KEYS, NKEY), "t3e-300");
     assert_string_equal(text_nearest("MESH", KEYS, NKEY), "mesh");

@@ -1,4 +1,5 @@
-/* test_units.c - quantities with units: what is read, what is refused and how it is said, what is printed. */
+/* test_units.c - quantities with units: what is read, what is refused and how it is said, what is
+ * printed. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -26,7 +27,8 @@ static void reads(const char *text, enum unit unit, double expected)
 {
     double value = NAN;
     char why[256] = "";
-    if (!units_parse(text, unit, &value, why, sizeof why)) fail_msg("'%s' was refused: %s", text, why);
+    if (!units_parse(text, unit, &value, why, sizeof why))
+        fail_msg("'%s' was refused: %s", text, why);
     if (value != expected) fail_msg("'%s' is %.17g, not %.17g", text, value, expected);
 }
 
@@ -104,7 +106,8 @@ static void people_write_units_in_many_ways(void **state)
 static void a_missing_unit_is_refused_with_an_example(void **state)
 {
     (void)state;
-    assert_string_equal(why_not("480", UNIT_BANDWIDTH), "no unit; expected a bandwidth such as '480 MB/s'");
+    assert_string_equal(why_not("480", UNIT_BANDWIDTH),
+                        "no unit; expected a bandwidth such as '480 MB/s'");
     assert_string_equal(why_not("0", UNIT_TIME), "no unit; expected a time such as '12 us'");
 }
 
@@ -112,25 +115,33 @@ static void a_unit_of_another_kind_is_named(void **state)
 {
     (void)state;
     assert_string_equal(why_not("5 MHz", UNIT_BANDWIDTH),
-                        "'MHz' is the unit of a frequency; expected a bandwidth such as '480 MB/s'");
-    assert_string_equal(why_not("5 s", UNIT_NONE), "unexpected unit 's'; expected a bare number such as '3'");
+                        "'MHz' is the unit of a frequency; expected a bandwidth such as '480 "
+                        "MB/s'");
+    assert_string_equal(why_not("5 s", UNIT_NONE),
+                        "unexpected unit 's'; expected a bare number such as '3'");
 }
 
 static void a_misspelt_unit_gets_a_suggestion(void **state)
 {
     (void)state;
-    assert_string_equal(why_not("480 mb/s", UNIT_BANDWIDTH), "unknown unit 'mb/s'; did you mean 'MB/s'?");
-    assert_string_equal(why_not("3 MHZ", UNIT_FREQUENCY), "unknown unit 'MHZ'; did you mean 'MHz'?");
-    assert_string_equal(why_not("3 KB", UNIT_BYTES), "ambiguous unit 'KB'; write 'kB' for 1000 or 'KiB' for 1024");
-    assert_non_null(strstr(why_not("3 parsecs", UNIT_BANDWIDTH), "'parsecs' is not the unit of a bandwidth"));
+    assert_string_equal(why_not("480 mb/s", UNIT_BANDWIDTH),
+                        "unknown unit 'mb/s'; did you mean 'MB/s'?");
+    assert_string_equal(why_not("3 MHZ", UNIT_FREQUENCY),
+                        "unknown unit 'MHZ'; did you mean 'MHz'?");
+    assert_string_equal(why_not("3 KB", UNIT_BYTES),
+                        "ambiguous unit 'KB'; write 'kB' for 1000 or 'KiB' for 1024");
+    assert_non_null(
+        strstr(why_not("3 parsecs", UNIT_BANDWIDTH), "'parsecs' is not the unit of a bandwidth"));
 }
 
 static void what_is_no_finite_number_is_refused(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"inf s", "nan s", "-infinity s", "0x10 s", "1e999 s", "1e-999 s", "s", "", ".",
-                                      "e5 s", "- 1 s", "1,000 s", "1 s s", "1 s.", "1 2 s", "1e s", "1 S", "1 m"};
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) assert_true(why_not(bad[i], UNIT_TIME)[0] != '\0');
+    static const char *const bad[] = {
+        "inf s", "nan s", "-infinity s", "0x10 s", "1e999 s", "1e-999 s", "s",    "",    ".",
+        "e5 s",  "- 1 s", "1,000 s",     "1 s s",  "1 s.",    "1 2 s",    "1e s", "1 S", "1 m"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_true(why_not(bad[i], UNIT_TIME)[0] != '\0');
     assert_true(why_not("1 x", UNIT_NONE)[0] != '\0');
     char endless[2000];
     memset(endless, '1', sizeof endless);
@@ -170,14 +181,16 @@ static void reads_back(double value, enum unit unit)
     double again = NAN;
     units_print(value, unit, buffer, sizeof buffer);
     bool ok = units_parse(buffer, unit, &again, why, sizeof why);
-    if (!ok || again != value) fail_msg("%.17g prints as '%s', reads as %.17g (%s)", value, buffer, again, why);
+    if (!ok || again != value)
+        fail_msg("%.17g prints as '%s', reads as %.17g (%s)", value, buffer, again, why);
 }
 
 static void what_is_printed_reads_back_to_the_same_double(void **state)
 {
     (void)state;
-    static const double edges[] = {0, DBL_MIN, DBL_MAX, DBL_TRUE_MIN, DBL_EPSILON, 0.1, 1.0 / 3, 999.9999999999999,
-                                   1000, 1024, 0x1p52, 0x1p53, 0x1p63, 1e16, 1e17, 1e-5, 9.999999999999999e-6};
+    static const double edges[] = {
+        0,    DBL_MIN, DBL_MAX, DBL_TRUE_MIN, DBL_EPSILON, 0.1,  1.0 / 3, 999.9999999999999,   1000,
+        1024, 0x1p52,  0x1p53,  0x1p63,       1e16,        1e17, 1e-5,    9.999999999999999e-6};
     struct random r = random_make(20, 1, 1);
     for (int unit = 0; unit < UNIT_KINDS; unit++) {
         for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
@@ -190,7 +203,8 @@ static void what_is_printed_reads_back_to_the_same_double(void **state)
                 double value;
             } any = {.word = random_u64(&r)};
             if (isfinite(any.value)) reads_back(any.value, unit);
-            reads_back(random_uniform(&r, -1, 1) * pow(10, (double)random_below(&r, 30) - 15), unit);
+            reads_back(random_uniform(&r, -1, 1) * pow(10, (double)random_below(&r, 30) - 15),
+                       unit);
             reads_back((double)random_below(&r, 100000), unit);
         }
     }
@@ -205,7 +219,8 @@ static void every_kind_has_a_name_an_example_that_reads_and_an_si_symbol(void **
         assert_true(strlen(units_name(unit)) > 3);
         assert_true(units_parse(units_example(unit), unit, &value, why, sizeof why));
         assert_non_null(units_si(unit));
-        for (int other = 0; other < unit; other++) assert_string_not_equal(units_si(other), units_si(unit));
+        for (int other = 0; other < unit; other++)
+            assert_string_not_equal(units_si(other), units_si(unit));
     }
     assert_string_equal(units_si(UNIT_BANDWIDTH), "B_per_s");
 }

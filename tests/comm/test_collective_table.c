@@ -1,4 +1,5 @@
-/* test_collective_table.c - the table of algorithms in docs/collectives.md says what the code says. */
+/* test_collective_table.c - the table of algorithms in docs/collectives.md says what the code
+ * says. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +24,8 @@ static struct letters letters_of(int P, int64_t m, int64_t n)
     for (; 2 * Q <= P; Q *= 2) q++;
     for (; 1 << L < P; L++) D += P - (1 << L) + (P > 3 << L ? P - (3 << L) : 0);
     for (int d = 1; d < P; d++) B += __builtin_popcount((unsigned)d);
-    l.value['P'] = P, l.value['Q'] = Q, l.value['q'] = q, l.value['R'] = P - Q, l.value['L'] = L, l.value['B'] = B;
+    l.value['P'] = P, l.value['Q'] = Q, l.value['q'] = q, l.value['R'] = P - Q, l.value['L'] = L,
+    l.value['B'] = B;
     l.value['D'] = D, l.value['S'] = (n + 8191) / 8192, l.value['m'] = m, l.value['n'] = n;
     return l;
 }
@@ -84,8 +86,8 @@ static void formula(const char *cell, const struct letters *l, int64_t wanted, c
     assert_int_equal(*s++, '`');
     int64_t found = sum(&s, l);
     if (*s != '`' || found != wanted)
-        fail_msg("P = %d: %s is %lld, the code says %lld, in: %s", (int)l->value['P'], cell, (long long)found,
-                 (long long)wanted, row);
+        fail_msg("P = %d: %s is %lld, the code says %lld, in: %s", (int)l->value['P'], cell,
+                 (long long)found, (long long)wanted, row);
 }
 
 enum { CELLS = 8 };
@@ -139,7 +141,9 @@ static void the_documents_table_is_the_codes(void **state)
     if (!f) fail_msg("%s cannot be read", path);
     while (fgets(line, sizeof line, f)) {
         strcpy(row, line);
-        if (!cells(line, cell) || strcmp(cell[0], "collective") == 0 || strncmp(cell[0], "---", 3) == 0) continue;
+        if (!cells(line, cell) || strcmp(cell[0], "collective") == 0 ||
+            strncmp(cell[0], "---", 3) == 0)
+            continue;
         check_row(cell, row);
         rows++;
     }

@@ -1,5 +1,5 @@
-/* test_collectives.c - every algorithm of every collective: results equal to a serial reference, costs to the closed
- * form; any number of ranks, any size, any root. */
+/* test_collectives.c - every algorithm of every collective: results equal to a serial reference,
+ * costs to the closed form; any number of ranks, any size, any root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,8 @@
 #include "base/random.h"
 #include "comm/collectives.h"
 
-/* An element, and three operations: a sum, the composition of maps x -> ax + b, and a maximum; all exact. */
+/* An element, and three operations: a sum, the composition of maps x -> ax + b, and a maximum; all
+ * exact. */
 struct pair {
     uint64_t a, b;
 };
@@ -28,7 +29,8 @@ static void sum(void *into, const void *with, bool before, int64_t n, void *cont
     w->flop += (uint64_t)n;
 }
 
-static void compose(void *into, const void *with, bool before, int64_t n, void *context, struct work *w)
+static void compose(void *into, const void *with, bool before, int64_t n, void *context,
+                    struct work *w)
 {
     struct pair *x = into;
     const struct pair *y = with;
@@ -40,7 +42,8 @@ static void compose(void *into, const void *with, bool before, int64_t n, void *
     w->flop += (uint64_t)n;
 }
 
-static void largest(void *into, const void *with, bool before, int64_t n, void *context, struct work *w)
+static void largest(void *into, const void *with, bool before, int64_t n, void *context,
+                    struct work *w)
 {
     struct pair *x = into;
     const struct pair *y = with;
@@ -55,13 +58,16 @@ static void largest(void *into, const void *with, bool before, int64_t n, void *
 static const struct collective_op operation[] = {
     {sum, NULL, true, false}, {compose, NULL, false, false}, {largest, NULL, true, true}};
 
-/* One call on all ranks. Element i of the block that rank r has for rank d is made from (r, d, i). */
+/* One call on all ranks. Element i of the block that rank r has for rank d is made from (r, d,
+ * i). */
 struct trial {
     const struct collective_algorithm *algorithm;
     struct collective_shape shape;
     const struct collective_op *op;
-    int64_t *matrix;            /* irregular: (size x size) elements from r to d, alltoall; its first row: blocks */
-    int64_t *places;            /* (size) of the blocks in gather's recv, scatter's send: with gaps */
+    /* irregular: (size x size) elements from r to d, alltoall; its first row: blocks */
+    int64_t *matrix;
+    /* (size) of the blocks in gather's recv, scatter's send: with gaps */
+    int64_t *places;
     int64_t gap;
     bool in_place;
     struct collective_call call; /* of the rank checked last */
@@ -75,13 +81,17 @@ static struct pair made(int r, int d, int64_t i)
     return (struct pair){x | 1, x * 31 + 5};
 }
 
-static int64_t of_block(const struct trial *t, int r) { return t->matrix ? t->matrix[r] : t->shape.count; }
+static int64_t of_block(const struct trial *t, int r)
+{
+    return t->matrix ? t->matrix[r] : t->shape.count;
+}
 static int64_t from_to(const struct trial *t, int r, int d)
 {
     return t->matrix ? t->matrix[r * t->shape.size + d] : t->shape.count;
 }
 
-/* The vector of rank r has all blocks, element i of block d being made(r, d, i); a plain vector is block 0. */
+/* The vector of rank r has all blocks, element i of block d being made(r, d, i); a plain vector is
+ * block 0. */
 static struct pair combined(const struct trial *t, int first, int end, int d, int64_t i)
 {
     struct pair x = made(first, d, i);
@@ -103,7 +113,10 @@ static void expect(const struct trial *t, int rank, struct pair found, struct pa
                  (int)t->shape.count, t->matrix ? " (irregular)" : "", rank);
 }
 
-static int64_t place(const struct trial *t, int r) { return t->places ? t->places[r] : t->shape.count * r; }
+static int64_t place(const struct trial *t, int r)
+{
+    return t->places ? t->places[r] : t->shape.count * r;
+}
 
 /* What each collective is given. */
 static void fill(const struct trial *t, int rank, struct pair *send, struct pair *recv)
@@ -137,7 +150,8 @@ static void check_vector(const struct trial *t, int rank, const struct pair *rec
     int end = scan ? rank + !s->exclusive : s->size;
     if (end == 0 || (s->kind == COLLECTIVE_REDUCE && rank != s->root)) return;
     for (int64_t i = 0; i < s->count; i++)
-        expect(t, rank, recv[i], s->kind == COLLECTIVE_BROADCAST ? made(s->root, 0, i) : combined(t, 0, end, 0, i));
+        expect(t, rank, recv[i],
+               s->kind == COLLECTIVE_BROADCAST ? made(s->root, 0, i) : combined(t, 0, end, 0, i));
 }
 
 static void check_blocks(const struct trial *t, int rank, const struct pair *recv)
@@ -148,7 +162,8 @@ static void check_blocks(const struct trial *t, int rank, const struct pair *rec
     for (int r = 0; r < s->size; r++) {
         bool all = s->kind == COLLECTIVE_ALLTOALL;
         int64_t n = all ? from_to(t, r, rank) : of_block(t, r);
-        for (int64_t i = 0; i < n; i++) expect(t, rank, recv[(all ? at : place(t, r)) + i], made(r, all ? rank : 0, i));
+        for (int64_t i = 0; i < n; i++)
+            expect(t, rank, recv[(all ? at : place(t, r)) + i], made(r, all ? rank : 0, i));
         at += n;
     }
 }
@@ -159,7 +174,8 @@ static void check(const struct trial *t, int rank, const struct pair *recv)
     case COLLECTIVE_BARRIER:
         return;
     case COLLECTIVE_SCATTER:
-        for (int64_t i = 0; i < of_block(t, rank); i++) expect(t, rank, recv[i], made(t->shape.root, rank, i));
+        for (int64_t i = 0; i < of_block(t, rank); i++)
+            expect(t, rank, recv[i], made(t->shape.root, rank, i));
         return;
     case COLLECTIVE_REDUCE_SCATTER:
         for (int64_t i = 0; i < of_block(t, rank); i++)
@@ -183,7 +199,8 @@ static void irregular(const struct trial *t, struct collective_call *k, int64_t 
 {
     int rank = comm_rank(k->comm), P = t->shape.size;
     if (!t->matrix) return;
-    for (int r = 0; r < P; r++) column[r] = t->shape.kind == COLLECTIVE_ALLTOALL ? from_to(t, r, rank) : of_block(t, r);
+    for (int r = 0; r < P; r++)
+        column[r] = t->shape.kind == COLLECTIVE_ALLTOALL ? from_to(t, r, rank) : of_block(t, r);
     k->count = of_block(t, rank);
     k->counts = column;
     if (t->shape.kind == COLLECTIVE_ALLTOALL) k->send_counts = t->matrix + rank * P;
@@ -200,7 +217,8 @@ static void call(struct comm *c, void *context)
     size_t room = (size_t)(s->total + s->count + t->gap * s->size + 1);
     struct pair *send = calloc(room, sizeof *send), *recv = calloc(room, sizeof *recv);
     int64_t *column = calloc((size_t)s->size, sizeof *column);
-    struct collective_call k = {.kind = s->kind, .comm = c, .tag = 3, .root = s->root, .count = s->count};
+    struct collective_call k = {
+        .kind = s->kind, .comm = c, .tag = 3, .root = s->root, .count = s->count};
     k.element = sizeof(struct pair);
     k.op = t->op;
     k.exclusive = s->exclusive;
@@ -249,15 +267,17 @@ static const int sizes[] = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 /* Every algorithm, every operation, at these numbers. */
-static void all_algorithms(enum collective_kind kind, int P, int64_t count, int root, bool exclusive)
+static void all_algorithms(enum collective_kind kind, int P, int64_t count, int root,
+                           bool exclusive)
 {
     int n;
     const struct collective_algorithm *row = collective_algorithms(kind, &n);
     for (int i = 0; i < n; i++)
         for (size_t op = 0; op < sizeof operation / sizeof *operation; op++) {
             struct trial t = {.algorithm = &row[i], .op = &operation[op]};
-            t.shape = (struct collective_shape){kind,  P,     root,  count,    count * P, sizeof(struct pair),
-                                                false, false, false, exclusive};
+            t.shape = (struct collective_shape){
+                kind,  P,     root,  count,    count * P, sizeof(struct pair),
+                false, false, false, exclusive};
             t.shape.commutative = t.op->commutative;
             t.shape.idempotent = t.op->idempotent;
             t.in_place = kind == COLLECTIVE_ALLREDUCE && (count + root) % 2;
@@ -286,11 +306,14 @@ static void irregular_trial(enum collective_kind kind, int P, struct random *s)
 {
     int n;
     const struct collective_algorithm *row = collective_algorithms(kind, &n);
-    int64_t *matrix = calloc((size_t)P * (size_t)P, sizeof *matrix), *places = calloc((size_t)P, sizeof *places);
-    for (int i = 0; i < P * P; i++) matrix[i] = random_below(s, 3) == 0 ? 0 : (int64_t)random_below(s, 10);
+    int64_t *matrix = calloc((size_t)P * (size_t)P, sizeof *matrix),
+            *places = calloc((size_t)P, sizeof *places);
+    for (int i = 0; i < P * P; i++)
+        matrix[i] = random_below(s, 3) == 0 ? 0 : (int64_t)random_below(s, 10);
     struct trial t = {.matrix = matrix, .places = places, .gap = 1};
     t.shape = (struct collective_shape){
-        kind, P, (int)random_below(s, (uint64_t)P), 9, 0, sizeof(struct pair), true, true, false, false};
+        kind,  P,    (int)random_below(s, (uint64_t)P), 9, 0, sizeof(struct pair), true, true,
+        false, false};
     int64_t at = 0;
     bool gaps = kind == COLLECTIVE_GATHER || kind == COLLECTIVE_SCATTER || random_below(s, 2);
     for (int r = 0; r < P; r++) {
@@ -311,12 +334,14 @@ static void irregular_trial(enum collective_kind kind, int P, struct random *s)
 static void blocks_of_different_sizes(void **state)
 {
     (void)state;
-    static const enum collective_kind kinds[] = {COLLECTIVE_GATHER, COLLECTIVE_SCATTER, COLLECTIVE_ALLGATHER,
-                                                 COLLECTIVE_ALLTOALL, COLLECTIVE_REDUCE_SCATTER};
+    static const enum collective_kind kinds[] = {COLLECTIVE_GATHER, COLLECTIVE_SCATTER,
+                                                 COLLECTIVE_ALLGATHER, COLLECTIVE_ALLTOALL,
+                                                 COLLECTIVE_REDUCE_SCATTER};
     struct random s = random_make(5, 0, 0);
     for (int i = 0; i < SIZES; i++)
         for (int repeat = 0; repeat < (sizes[i] > 9 ? 1 : 4); repeat++)
-            for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) irregular_trial(kinds[k], sizes[i], &s);
+            for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+                irregular_trial(kinds[k], sizes[i], &s);
 }
 
 /* Each row applies somewhere, names itself once, and is found. */
@@ -325,11 +350,13 @@ static void tables_are_whole(void **state)
     (void)state;
     for (int kind = 0; kind < COLLECTIVE_KINDS; kind++) {
         int n;
-        const struct collective_algorithm *row = collective_algorithms((enum collective_kind)kind, &n);
+        const struct collective_algorithm *row =
+            collective_algorithms((enum collective_kind)kind, &n);
         assert_int_equal(collective_find(collective_name((enum collective_kind)kind)), kind);
         assert_true(n >= 2);
         for (int i = 0; i < n; i++) {
-            assert_ptr_equal(collective_algorithm_find((enum collective_kind)kind, row[i].name), &row[i]);
+            assert_ptr_equal(collective_algorithm_find((enum collective_kind)kind, row[i].name),
+                             &row[i]);
             assert_true(row[i].run && row[i].cost && row[i].source);
             assert_int_equal(row[i].needs != NULL, row[i].applies != NULL);
         }
@@ -348,7 +375,8 @@ static void default_choice_is_mpichs(void **state)
 {
     (void)state;
     assert_string_equal(chosen(COLLECTIVE_BROADCAST, 64, 12287, true), "binomial");
-    assert_string_equal(chosen(COLLECTIVE_BROADCAST, 64, 12288, true), "scatter-recursive-doubling");
+    assert_string_equal(chosen(COLLECTIVE_BROADCAST, 64, 12288, true),
+                        "scatter-recursive-doubling");
     assert_string_equal(chosen(COLLECTIVE_BROADCAST, 60, 12288, true), "scatter-allgather");
     assert_string_equal(chosen(COLLECTIVE_BROADCAST, 64, 524288, true), "scatter-allgather");
     assert_string_equal(chosen(COLLECTIVE_BROADCAST, 7, 524288, true), "binomial");
@@ -374,10 +402,14 @@ static void default_choice_is_mpichs(void **state)
 static void rules_come_before_the_default(void **state)
 {
     (void)state;
-    const struct collective_algorithm *ring = collective_algorithm_find(COLLECTIVE_ALLREDUCE, "ring");
-    const struct collective_algorithm *trees = collective_algorithm_find(COLLECTIVE_ALLREDUCE, "reduce-broadcast");
-    const struct collective_rule rule[] = {{COLLECTIVE_ALLREDUCE, trees, 0, 0}, {COLLECTIVE_ALLREDUCE, ring, 1000, 16}};
-    struct collective_shape s = {COLLECTIVE_ALLREDUCE, 16, 0, 1000, 16000, 1, false, true, false, false};
+    const struct collective_algorithm *ring =
+        collective_algorithm_find(COLLECTIVE_ALLREDUCE, "ring");
+    const struct collective_algorithm *trees =
+        collective_algorithm_find(COLLECTIVE_ALLREDUCE, "reduce-broadcast");
+    const struct collective_rule rule[] = {{COLLECTIVE_ALLREDUCE, trees, 0, 0},
+                                           {COLLECTIVE_ALLREDUCE, ring, 1000, 16}};
+    struct collective_shape s = {
+        COLLECTIVE_ALLREDUCE, 16, 0, 1000, 16000, 1, false, true, false, false};
     assert_ptr_equal(collective_choose(&s, rule, 2), ring);
     s.count = 999;
     assert_ptr_equal(collective_choose(&s, rule, 2), trees);

@@ -1,5 +1,5 @@
-/* test_comm.c - one rank alone counts its work; collectives reach every rank with the right bits and no message more.
- */
+/* test_comm.c - one rank alone counts its work; collectives reach every rank with the right bits
+ * and no message more. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -196,19 +196,25 @@ static void functions_that_others_may_call_get_an_entry(void **state)
         const char *text;
         bool guarded;
     } cases[] = {
-        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbx\n\t.cfi_def_cfa_offset 16\n\tmovl 8(%rsp), %eax\n"), true},
+        {FUNCTION("\t.globl\tf\n", "f",
+         "\tpushq\t%rbx\n\t.cfi_def_cfa_offset 16\n\tmovl 8(%rsp), %eax\n"), true},
         {FUNCTION("\t.weak\tf\n", "f", ""), true},
         {FUNCTION("", "f", ""), false},                                    /* static */
         {FUNCTION("", "f", "") "\tleaq\tf(%rip), %rax\n", true},          /* and given away */
         {FUNCTION("", "f", "") "\t.data\n\t.quad\tf\n", true},
         {FUNCTION("", "f", "") "\tcall\tf\n", false},
-        {FUNCTION("\t.globl\tf\n", "f", "\tmovl 8(%rsp), %eax\n"), false}, /* arguments on the stack */
+        {FUNCTION("\t.globl\tf\n", "f",
+         "\tmovl 8(%rsp), %eax\n"), false}, /* arguments on the stack */
         {FUNCTION("\t.globl\tf\n", "f", "\tleaq 8(%rsp), %r10\n"), false},
-        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
-                  "\t.cfi_def_cfa_register 6\n\tmovl\t-8(%rbp), %eax\n\tmovl\t40(%rsp), %eax\n"), true},
-        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
+        {FUNCTION("\t.globl\tf\n", "f",
+         "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
+                  "\t.cfi_def_cfa_register 6\n\tmovl\t-8(%rbp), %eax\n\tmovl\t40(%rsp), "
+                  "%eax\n"), true},
+        {FUNCTION("\t.globl\tf\n", "f",
+         "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
                   "\t.cfi_def_cfa_register 6\n\tmovl\t16(%rbp), %eax\n"), false},
-        {"\t.globl\tf\n\t.type\tf, @function\nf:\n\tret\n\t.size\tf, .-f\n", false}, /* no unwind table */
+        {"\t.globl\tf\n\t.type\tf, @function\nf:\n\tret\n\t.size\tf, "
+         ".-f\n", false}, /* no unwind table */
     };
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct block_source guarded = {"sum.c", "", false, true};
@@ -217,7 +223,8 @@ static void functions_that_others_may_call_get_an_entry(void **state)
         err_clear(&e);
         text_add(&in, "%s", cases[i].text);
         assert_true(block_filter(&in, &guarded, &out, &e));
-        const bool entry = strstr(out.s, "\nf:\n\t.cfi_startproc\n.Lmimdsim_f1:\n\tpushq %r15\n") != NULL;
+        const bool entry =
+            strstr(out.s, "\nf:\n\t.cfi_startproc\n.Lmimdsim_f1:\n\tpushq %r15\n") != NULL;
         const bool body = strstr(out.s, "mimdsim_body.f:\n.LFB0:\n") != NULL;
         if (entry != cases[i].guarded || body != entry) fail_msg("case %u: %s", i, out.s);
         text_free(&in);

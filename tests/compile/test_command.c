@@ -38,8 +38,7 @@ static void sources_options_and_libraries_go_to_their_steps(void **state)
     struct arena *a;
     struct err e;
     assert_true(read_line("-O2 -I inc -Dx='a b' main.c -o prog -L. obj.o -lfoo part.f90 -Wl,-z,now "
-                          "-Wa,--warn -flto=auto "
-                          "-static -std=c11",
+                          "-Wa,--warn -flto=auto -static -std=c11",
                           &c, &a, &e));
     assert_int_equal(c.stage, COMMAND_LINK);
     assert_string_equal(c.output, "prog");

@@ -129,10 +129,9 @@ static void assemble(const char *dir, int k, bool counted, bool guarded)
 /* The functions that tell of the table; not counted themselves. */
 static const char probe[] =
     "extern char b[] __asm__(\"__start_mimdsim_blocks\") __attribute__((weak, "
-    "visibility(\"hidden\")));"
-    "extern char e[] __asm__(\"__stop_mimdsim_blocks\") __attribute__((weak, "
-    "visibility(\"hidden\")));"
-    "char *table_begin(void) { return b; } char *table_end(void) { return e; }";
+    "visibility(\"hidden\")));extern char e[] __asm__(\"__stop_mimdsim_blocks\") "
+    "__attribute__((weak, visibility(\"hidden\")));char *table_begin(void) { return b; } char "
+    "*table_end(void) { return e; }";
 
 struct program {
     const char *file[2];

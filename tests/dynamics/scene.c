@@ -23,12 +23,26 @@ struct scene scene_of(const struct model_spec *spec)
 
 void scene_end(struct scene *s) { arena_destroy(s->a); }
 
-struct model_spec spec_random(enum model_generator generator, int nbody, enum model_joint joint, uint64_t seed)
+struct model_spec spec_random(enum model_generator generator, int nbody, enum model_joint joint,
+                              uint64_t seed)
 {
-    return (struct model_spec){.generator = generator, .nbody = nbody, .joint = joint, .base = BASE_FIXED,
-                               .inertia = INERTIA_RANDOM, .pose = POSE_RANDOM, .axes = AXES_TWISTED, .length = 1,
-                               .radius = 0.05, .mass = 1, .mass_ratio = 10, .gravity = {1, -2, -9.81}, .rate = 1,
-                               .torque = 1, .external_force = 1, .branch = 2, .seed = seed};
+    return (struct model_spec){.generator = generator,
+                               .nbody = nbody,
+                               .joint = joint,
+                               .base = BASE_FIXED,
+                               .inertia = INERTIA_RANDOM,
+                               .pose = POSE_RANDOM,
+                               .axes = AXES_TWISTED,
+                               .length = 1,
+                               .radius = 0.05,
+                               .mass = 1,
+                               .mass_ratio = 10,
+                               .gravity = {1, -2, -9.81},
+                               .rate = 1,
+                               .torque = 1,
+                               .external_force = 1,
+                               .branch = 2,
+                               .seed = seed};
 }
 
 double relative_error(int n, const double *x, const double *y)

@@ -1,4 +1,5 @@
-/* test_closed_forms.c - systems whose motion textbooks give: pendulums, the falling rod, the top, the hanging chain. */
+/* test_closed_forms.c - systems whose motion textbooks give: pendulums, the falling rod, the top,
+ * the hanging chain. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,9 +19,14 @@ static const double gravity = 9.81;
 /* Rod along x on a joint about z, gravity along -y. */
 static struct body_def rod(int parent, double length, double mass)
 {
-    struct body_def b = {.name = "rod", .parent = parent, .joint = JOINT_REVOLUTE, .axis = {0, 0, 1}, .mass = mass,
-                         .com = {0.5 * length}, .inertia = {0.01 * mass, 0, 0, mass * length * length / 12, 0,
-                         mass * length * length / 12}};
+    struct body_def b = {.name = "rod",
+                         .parent = parent,
+                         .joint = JOINT_REVOLUTE,
+                         .axis = {0, 0, 1},
+                         .mass = mass,
+                         .com = {0.5 * length},
+                         .inertia = {0.01 * mass, 0, 0, mass * length * length / 12, 0,
+                                     mass * length * length / 12}};
     b.placement.p[0] = parent >= 0 ? length : 0;
     return b;
 }
@@ -36,10 +42,11 @@ static struct model *model_of(const struct body_def *body, int n, struct arena *
     return m;
 }
 
-static void forward_by(const struct model *m, const struct state *s, enum forward_method method, struct arena *a,
-                       double *qdd)
+static void forward_by(const struct model *m, const struct state *s, enum forward_method method,
+                       struct arena *a, double *qdd)
 {
-    assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, method, a, qdd, NULL, NULL, NULL));
+    assert_true(
+        dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, method, a, qdd, NULL, NULL, NULL));
 }
 
 /* m g l cos(q) / (J + m l^2), q from the horizontal. */
@@ -88,7 +95,8 @@ static void planar_double_pendulum(void **state)
     double m11 = 4.0 / 3 * m * L * L, m12 = 0.5 * m * L * L * cos(A - B), m22 = m * L * L / 3;
     double f1 = -0.5 * m * L * L * sin(A - B) * wb * wb - 1.5 * m * gravity * L * cos(A);
     double f2 = 0.5 * m * L * L * sin(A - B) * wa * wa - 0.5 * m * gravity * L * cos(B);
-    double det = m11 * m22 - m12 * m12, aa = (m22 * f1 - m12 * f2) / det, bb = (m11 * f2 - m12 * f1) / det;
+    double det = m11 * m22 - m12 * m12, aa = (m22 * f1 - m12 * f2) / det,
+           bb = (m11 * f2 - m12 * f1) / det;
     for (int method = 0; method < FORWARD_METHODS; method++) {
         double qdd[2];
         forward_by(model, s, (enum forward_method)method, a, qdd);
@@ -138,7 +146,8 @@ static void a_chain_hanging_at_rest_stays_and_carries_the_weight_below(void **st
     }
     dynamics_type_of(PRECISION_DOUBLE)->inverse(m, s, a, x, NULL);
     for (int i = 0; i < N; i++) assert_near(x[i], 0, 1e-12);
-    /* the same chain on prismatic joints along x, which now is up: each carries everything outwards of it */
+    /* the same chain on prismatic joints along x, which now is up: each carries everything outwards
+     * of it */
     for (int i = 0; i < N; i++) b[i].joint = JOINT_PRISMATIC, b[i].axis[0] = 1, b[i].axis[2] = 0;
     m = model_of(b, N, a);
     m->gravity[1] = 0, m->gravity[0] = -gravity;
@@ -154,8 +163,13 @@ static void a_helical_joint_trades_turn_for_advance(void **state)
     (void)state;
     struct arena *a = arena_create();
     const double pitch = 0.2, s = sqrt(1 + pitch * pitch);
-    struct body_def b = {.name = "screw", .parent = -1, .joint = JOINT_HELICAL, .axis = {0, 1, 0}, .pitch = pitch,
-                         .mass = 3, .inertia = {0.3, 0, 0, 0.4, 0, 0.3}};
+    struct body_def b = {.name = "screw",
+                         .parent = -1,
+                         .joint = JOINT_HELICAL,
+                         .axis = {0, 1, 0},
+                         .pitch = pitch,
+                         .mass = 3,
+                         .inertia = {0.3, 0, 0, 0.4, 0, 0.3}};
     struct model *m = model_of(&b, 1, a);
     for (int method = 0; method < FORWARD_METHODS; method++) {
         double x;

@@ -1,4 +1,5 @@
-/* test_counts.c - the declared operations of the serial algorithms are those that their source executes, to the flop.
+/* test_counts.c - the declared operations of the serial algorithms are those that their source
+ * executes, to the flop.
  *
  * They are the denominator of every speedup. Quad precision stands for all: the source is one. */
 #include <setjmp.h>
@@ -41,20 +42,23 @@ static long difference(uint64_t x, uint64_t y) { return (long)(x - y); }
 static void end(struct account *a)
 {
     const struct work done = flop_meter_stop(), *w = &a->declared;
-    if (w->flop == done.flop && w->div == done.div && w->sqrt == done.sqrt && w->trig == done.trig) return;
+    if (w->flop == done.flop && w->div == done.div && w->sqrt == done.sqrt && w->trig == done.trig)
+        return;
     a->wrong++;
-    print_error("%s, %d %s bodies, %s%s%s%s%s%d loops: flop %+ld of %lu, div %+ld, sqrt %+ld, trig %+ld\n", a->what,
-                a->model->nbody, joint_name(a->model->body[a->model->nbody - 1].joint),
-                a->model->is_chain ? "" : "tree, ", a->state->at_rest ? "at rest, " : "",
-                a->state->fext ? "loads, " : "", a->model->body[0].stiffness != 0 ? "springs, " : "",
-                a->model->has_phi ? "" : "no phi, ", a->model->nloop, difference(w->flop, done.flop),
-                (unsigned long)done.flop, difference(w->div, done.div), difference(w->sqrt, done.sqrt),
-                difference(w->trig, done.trig));
+    print_error(
+        "%s, %d %s bodies, %s%s%s%s%s%d loops: flop %+ld of %lu, div %+ld, sqrt %+ld, trig %+ld\n",
+        a->what, a->model->nbody, joint_name(a->model->body[a->model->nbody - 1].joint),
+        a->model->is_chain ? "" : "tree, ", a->state->at_rest ? "at rest, " : "",
+        a->state->fext ? "loads, " : "", a->model->body[0].stiffness != 0 ? "springs, " : "",
+        a->model->has_phi ? "" : "no phi, ", a->model->nloop, difference(w->flop, done.flop),
+        (unsigned long)done.flop, difference(w->div, done.div), difference(w->sqrt, done.sqrt),
+        difference(w->trig, done.trig));
 }
 
 extern const struct dynamics_type dynamics_type_f128;
 
-/* Every algorithm and integrator on one system; those that do not apply or break down say nothing. */
+/* Every algorithm and integrator on one system; those that do not apply or break down say
+ * nothing. */
 static int wrong_counts(struct scene *s)
 {
     const struct dynamics_type *type = &dynamics_type_f128;
@@ -68,7 +72,8 @@ static int wrong_counts(struct scene *s)
     end(&a);
     for (int k = 0; k < 2 * FORWARD_METHODS; k++) {
         struct work *w = begin(&a, forward_method_name(k / 2));
-        if (type->forward(s->model, s->state, k / 2, s->a, x, NULL, k % 2 ? &report : NULL, w)) end(&a);
+        if (type->forward(s->model, s->state, k / 2, s->a, x, NULL, k % 2 ? &report : NULL, w))
+            end(&a);
     }
     for (enum step_rule rule = STEP_SEMI_IMPLICIT; rule <= STEP_LINEARLY_IMPLICIT; rule++) {
         static const char *const name[] = {"semi-implicit", "kdk", "rk4", "linearly implicit"};
@@ -81,10 +86,12 @@ static int wrong_counts(struct scene *s)
 /* The n-th of all kinds of open systems. */
 static struct model_spec open_system(int n)
 {
-    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE, MODEL_COMB};
+    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE,
+                                                     MODEL_COMB};
     struct random r = random_make((uint64_t)n, 0, 0);
     struct model_spec spec =
-        spec_random(generator[random_below(&r, 3)], 1 + (int)random_below(&r, 7), n % (JOINT_MIXED + 1), (uint64_t)n);
+        spec_random(generator[random_below(&r, 3)], 1 + (int)random_below(&r, 7),
+                    n % (JOINT_MIXED + 1), (uint64_t)n);
     spec.base = (enum model_base)random_below(&r, 3);
     if (spec.base == BASE_MOVING)
         for (int k = 0; k < 6; k++) spec.base_acceleration[k] = k - 2.5;
@@ -113,8 +120,9 @@ static void open_systems_are_counted_to_the_flop(void **state)
 /* Trees whose branches meet again, in every closing joint and in rows. */
 static struct scene closed_system(int n)
 {
-    static const enum model_joint closing[] = {JOINT_FIXED,     JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_CYLINDRICAL,
-                                               JOINT_SPHERICAL, JOINT_PLANAR,   JOINT_SLOT,      JOINT_POINT_PLANE};
+    static const enum model_joint closing[] = {JOINT_FIXED,       JOINT_REVOLUTE,   JOINT_PRISMATIC,
+                                               JOINT_CYLINDRICAL, JOINT_SPHERICAL,  JOINT_PLANAR,
+                                               JOINT_SLOT,        JOINT_POINT_PLANE};
     struct random r = random_make((uint64_t)n, 1, 0);
     struct model_spec spec = spec_random(n % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, 9,
                                          n % 3 ? JOINT_SPHERICAL : JOINT_REVOLUTE, (uint64_t)n);
@@ -127,12 +135,14 @@ static struct scene closed_system(int n)
     struct model *tree = model_build(&spec, s.a, &e), *m = model_begin(s.a, NULL);
     for (int i = 0; i < tree->nbody; i++) {
         struct body_def body = tree->body[i];
-        if (n % 7 == 0 && i == 3) body.mass = 0, memset(body.inertia, 0, sizeof body.inertia); /* no Phi */
+        /* no Phi */
+        if (n % 7 == 0 && i == 3) body.mass = 0, memset(body.inertia, 0, sizeof body.inertia);
         assert_true(model_add_body(m, &body, &e) >= 0);
     }
     for (int k = 0; k < 1 + n % 3; k++) {
         struct loop_def l = {
-            .name = "loop", .body_a = k ? 2 : -1, .body_b = 8 - k, .joint = closing[random_below(&r, 8)]};
+            .name = "loop", .body_a = k ? 2 : -1, .body_b = 8 - k, .joint = closing[random_below(&r,
+            8)]};
         l.frame_a = (struct frame){{0.1, 0.2, -0.3, 0.9}, {0.3, 0.1, 0.2}};
         l.frame_b = (struct frame){{-0.4, 0.1, 0.5, 0.6}, {0.5, -0.1, 0.1}};
         l.alpha = l.beta = n % 2;
@@ -176,7 +186,8 @@ static void closed_systems_are_counted_to_the_flop(void **state)
 static void planar_systems_are_counted_to_the_flop(void **state)
 {
     (void)state;
-    static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR, JOINT_MIXED};
+    static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR,
+                                             JOINT_MIXED};
     struct account a = {0};
     for (int n = 0; n < 160; n++) {
         const struct planar_options o = {.n = 1 + n % 9,

@@ -1,4 +1,5 @@
-/* test_integrate.c - orders of the fixed steps, conservation, and GSL's steppers against reference trajectories. */
+/* test_integrate.c - orders of the fixed steps, conservation, and GSL's steppers against reference
+ * trajectories. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +30,8 @@ static struct state *copy_of(const struct scene *s)
 }
 
 /* Error of q after 0.2 s by n steps. */
-static double error_of(const struct scene *s, enum step_rule rule, int n, const struct state *reference)
+static double error_of(const struct scene *s, enum step_rule rule, int n,
+                       const struct state *reference)
 {
     struct state *c = copy_of(s);
     assert_true(exact()->advance(s->model, c, rule, 0.2 / n, n, s->a, NULL));
@@ -40,7 +42,8 @@ static double error_of(const struct scene *s, enum step_rule rule, int n, const 
 static void steps_have_their_orders(void **state)
 {
     (void)state;
-    static const int order[] = {[STEP_SEMI_IMPLICIT] = 1, [STEP_KDK] = 2, [STEP_RK4] = 4, [STEP_LINEARLY_IMPLICIT] = 1};
+    static const int order[] = {
+        [STEP_SEMI_IMPLICIT] = 1, [STEP_KDK] = 2, [STEP_RK4] = 4, [STEP_LINEARLY_IMPLICIT] = 1};
     for (uint64_t seed = 2; seed < 5; seed++) {
         struct model_spec spec = spec_random(MODEL_RANDOM_TREE, 9, JOINT_MIXED, seed);
         spec.external_force = 0;
@@ -79,20 +82,23 @@ static void free_motion_conserves(void **state)
     scene_end(&s);
 }
 
-/* (M + s) u' = tau - k (q - rest + h u) - c u - xi with the mass matrix and inverse dynamics, joints of every kind. */
+/* (M + s) u' = tau - k (q - rest + h u) - c u - xi with the mass matrix and inverse dynamics,
+ * joints of every kind. */
 static void implicit_accelerations_solve_their_equation(void **state)
 {
     (void)state;
     int springs = 0;
     for (uint64_t seed = 1; seed < 9; seed++) {
-        struct model_spec spec = spec_random(MODEL_RANDOM_TREE, 9, seed % 2 ? JOINT_MIXED : JOINT_REVOLUTE, seed);
+        struct model_spec spec =
+            spec_random(MODEL_RANDOM_TREE, 9, seed % 2 ? JOINT_MIXED : JOINT_REVOLUTE, seed);
         const double h = 1e-2, k = pow(10, (double)seed), c = seed % 3 ? 1e-2 * k : 0;
         spec.base = seed % 4 ? BASE_FIXED : BASE_FLOATING;
         spec.stiffness = k, spec.damping = c;
         struct scene s = scene_of(&spec);
         struct dynamics *d = dynamics_take(s.model, s.a);
         const int n = s.model->nu;
-        double *ud = TAKE(s.a, n, double), *mass = TAKE(s.a, n * n, double), *xi = TAKE(s.a, n, double);
+        double *ud = TAKE(s.a, n, double), *mass = TAKE(s.a, n * n, double),
+               *xi = TAKE(s.a, n, double);
         struct work w = {0};
         dynamics_load(d, s.state);
         assert_true(implicit_forward(d, h, s.state->q, s.state->qd, s.state->tau, ud, &w));
@@ -104,11 +110,13 @@ static void implicit_accelerations_solve_their_equation(void **state)
                 const double q = s.state->q[s.model->q_at[i]], u = s.state->qd[r];
                 double left = xi[r] - s.state->tau[r], scale = fabs(left);
                 if (b->stiffness > 0) {
-                    left += b->stiffness * (q - b->rest + h * u) + b->damping * u + h * (c + h * k) * ud[r];
+                    left += b->stiffness * (q - b->rest + h * u) + b->damping * u +
+                            h * (c + h * k) * ud[r];
                     scale = fmax(scale, fabs(h * (c + h * k) * ud[r]));
                     springs++;
                 }
-                for (int j = 0; j < n; j++) left += mass[n * r + j] * ud[j], scale += fabs(mass[n * r + j] * ud[j]);
+                for (int j = 0; j < n; j++)
+                    left += mass[n * r + j] * ud[j], scale += fabs(mass[n * r + j] * ud[j]);
                 assert_true(fabs(left) <= 1e-11 * scale);
             }
         scene_end(&s);
@@ -116,7 +124,8 @@ static void implicit_accelerations_solve_their_equation(void **state)
     assert_true(springs > 30);
 }
 
-/* Steps a thousand times above the explicit limit: springs come to rest, explicitly they break everything. */
+/* Steps a thousand times above the explicit limit: springs come to rest, explicitly they break
+ * everything. */
 static void implicit_steps_are_stable_at_any_stiffness(void **state)
 {
     (void)state;
@@ -127,15 +136,18 @@ static void implicit_steps_are_stable_at_any_stiffness(void **state)
         struct state *c = copy_of(&s), *explicit = copy_of(&s);
         for (int i = 0; i < 6; i++) c->q[i] += 0.1, explicit->q[i] += 0.1;
         assert_true(exact()->advance(s.model, c, STEP_LINEARLY_IMPLICIT, 0.1, 200, s.a, NULL));
-        for (int i = 0; i < 6; i++) assert_true(fabs(c->q[i] - s.model->body[i].rest) < 1e-3 && fabs(c->qd[i]) < 1e-2);
-        const bool went = exact()->advance(s.model, explicit, STEP_SEMI_IMPLICIT, 0.1, 200, s.a, NULL);
+        for (int i = 0; i < 6; i++)
+            assert_true(fabs(c->q[i] - s.model->body[i].rest) < 1e-3 && fabs(c->qd[i]) < 1e-2);
+        const bool went =
+            exact()->advance(s.model, explicit, STEP_SEMI_IMPLICIT, 0.1, 200, s.a, NULL);
         assert_true(!went || !(fabs(explicit->qd[0]) < 1e6));
         scene_end(&s);
     }
 }
 
 /* Every GSL stepper brings a short reference trajectory to its tolerance. */
-static void steppers_reach_the_reference(const char *path, const char *only, double tolerance, double allowed)
+static void steppers_reach_the_reference(const char *path, const char *only, double tolerance,
+                                         double allowed)
 {
     struct arena *a = arena_create();
     struct err e;
@@ -150,7 +162,8 @@ static void steppers_reach_the_reference(const char *path, const char *only, dou
         struct trajectory_options o = {.stepper = *name, .tolerance = low ? 1e-5 : tolerance};
         struct trajectory_report report;
         struct state *s = vector_state(&c, m, a);
-        assert_true(trajectory_advance(m, s, c.instant[1].time - c.instant[0].time, &o, a, &report, &e));
+        assert_true(
+            trajectory_advance(m, s, c.instant[1].time - c.instant[0].time, &o, a, &report, &e));
         assert_true(report.steps > 2 && report.evaluations > report.steps);
         assert_true(relative_error(m->nq, s->q, c.instant[1].q) < (low ? 1e-2 : allowed));
         assert_true(relative_error(m->nu, s->qd, c.instant[1].qd) < (low ? 5e-2 : 10 * allowed));
@@ -173,8 +186,9 @@ static void fixed_steps_of_the_library_have_their_orders(void **state)
         const char *name;
         double order;
         int coarse;
-    } stepper[] = {{"rk2", 2, 40},    {"rk4", 4, 20},    {"rkf45", 4, 20}, {"rkck", 5, 10},  {"rk8pd", 8, 4},
-                   {"rk1imp", 1, 40}, {"rk2imp", 2, 40}, {"rk4imp", 4, 10}, {"bsimp", 6, 4}};
+    } stepper[] = {{"rk2", 2, 40},    {"rk4", 4, 20},    {"rkf45", 4, 20},
+                   {"rkck", 5, 10},   {"rk8pd", 8, 4},   {"rk1imp", 1, 40},
+                   {"rk2imp", 2, 40}, {"rk4imp", 4, 10}, {"bsimp", 6, 4}};
     struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 3, JOINT_REVOLUTE, 5);
     spec.external_force = 0;
     spec.base = BASE_FIXED;
@@ -188,7 +202,8 @@ static void fixed_steps_of_the_library_have_their_orders(void **state)
         double error[2];
         for (int fine = 0; fine < 2; fine++) {
             const struct trajectory_options o = {
-                .stepper = stepper[k].name, .tolerance = 1e-13, .fixed_steps = (fine + 1) * stepper[k].coarse};
+                .stepper = stepper[k].name, .tolerance = 1e-13,
+                .fixed_steps = (fine + 1) * stepper[k].coarse};
             struct trajectory_report report;
             struct state *c = copy_of(&s);
             assert_true(trajectory_advance(s.model, c, 0.2, &o, s.a, &report, &e));
@@ -206,8 +221,9 @@ static void fixed_steps_of_the_library_have_their_orders(void **state)
 static void the_best_stepper_follows_all_instants(void **state)
 {
     (void)state;
-    static const char *const path[] = {DATA("traj_double_pendulum.json"), DATA("traj_spherical_n05.json"),
-                                       DATA("traj_float_n08.json"), DATA("traj_stiff_n06.json")};
+    static const char *const path[] = {DATA("traj_double_pendulum.json"),
+                                       DATA("traj_spherical_n05.json"), DATA("traj_float_n08.json"),
+                                       DATA("traj_stiff_n06.json")};
     for (int k = 0; k < 4; k++) {
         struct arena *a = arena_create();
         struct err e;
@@ -217,8 +233,11 @@ static void the_best_stepper_follows_all_instants(void **state)
         struct model *m = vector_model(&c, a, &e);
         struct state *s = vector_state(&c, m, a);
         const struct trajectory_options o = {.stepper = "rk8pd", .tolerance = 1e-12};
-        for (int i = 1; i < 4 && c.instant[i].time <= (k < 3 ? 1 : 0.1) && c.instant[i].sensitivity < 1e4; i++) {
-            assert_true(trajectory_advance(m, s, c.instant[i].time - c.instant[i - 1].time, &o, a, NULL, &e));
+        for (int i = 1;
+             i < 4 && c.instant[i].time <= (k < 3 ? 1 : 0.1) && c.instant[i].sensitivity < 1e4;
+             i++) {
+            assert_true(trajectory_advance(m, s, c.instant[i].time - c.instant[i - 1].time, &o, a,
+                                           NULL, &e));
             double allowed = 1e-9 * fmax(1, c.instant[i].sensitivity);
             assert_true(relative_error(m->nq, s->q, c.instant[i].q) < allowed);
             struct dynamics_totals t;
@@ -242,7 +261,8 @@ static void an_unknown_stepper_is_refused_with_the_nearest_name(void **state)
     assert_int_equal(e.kind, ERR_USAGE);
     assert_non_null(strstr(e.text, "rk8pd"));
     err_clear(&e);
-    const struct trajectory_options few = {.stepper = "rkf45", .tolerance = 1e-6, .most_evaluations = 3};
+    const struct trajectory_options few = {
+        .stepper = "rkf45", .tolerance = 1e-6, .most_evaluations = 3};
     assert_false(trajectory_advance(s.model, s.state, 1, &few, s.a, NULL, &e));
     assert_int_equal(e.kind, ERR_CHECK);
     const double no_time[] = {0, -1, INFINITY, NAN};

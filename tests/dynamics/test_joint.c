@@ -1,4 +1,5 @@
-/* test_joint.c - joints against finite differences in quad precision: velocities, accelerations, subspaces, steps. */
+/* test_joint.c - joints against finite differences in quad precision: velocities, accelerations,
+ * subspaces, steps. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,32 +29,37 @@ static struct chain chain_of(enum model_joint joint, uint64_t seed)
     struct chain c = {.scene = scene_of(&spec)};
     const struct model *m = c.scene.model;
     c.d = dynamics_take(m, c.scene.a);
-    c.q = TAKE(c.scene.a, m->nq, real), c.u = TAKE(c.scene.a, m->nu, real), c.ud = TAKE(c.scene.a, m->nu, real);
+    c.q = TAKE(c.scene.a, m->nq, real), c.u = TAKE(c.scene.a, m->nu, real),
+    c.ud = TAKE(c.scene.a, m->nu, real);
     for (int k = 0; k < m->nq; k++) c.q[k] = (real)c.scene.state->q[k];
-    for (int k = 0; k < m->nu; k++) c.u[k] = (real)c.scene.state->qd[k], c.ud[k] = (real)c.scene.state->qdd[k];
+    for (int k = 0; k < m->nu; k++)
+        c.u[k] = (real)c.scene.state->qd[k], c.ud[k] = (real)c.scene.state->qdd[k];
     return c;
 }
 
-/* The motion of all bodies a time h later: q along q' = N(q) u to second order by two half-steps of the midpoint. */
+/* The motion of all bodies a time h later: q along q' = N(q) u to second order by two half-steps of
+ * the midpoint. */
 static void at_time(const struct chain *c, real h, struct body_motion *out)
 {
     const struct model *m = c->scene.model;
     real *q = TAKE(c->scene.a, m->nq, real), *mid = TAKE(c->scene.a, m->nq, real);
     real *rate = TAKE(c->scene.a, m->nq, real);
     real *u = TAKE(c->scene.a, m->nu, real), *um = TAKE(c->scene.a, m->nu, real);
-    for (int k = 0; k < m->nu; k++) u[k] = c->u[k] + h * c->ud[k], um[k] = c->u[k] + h / 2 * c->ud[k];
+    for (int k = 0; k < m->nu; k++)
+        u[k] = c->u[k] + h * c->ud[k], um[k] = c->u[k] + h / 2 * c->ud[k];
     for (int i = 0; i < m->nbody; i++) {
         const struct body *b = &c->d->body[i];
         body_qdot(b, c->q + b->q_at, c->u + b->u_at, rate + b->q_at);
-        for (int k = 0; k < b->nq; k++) mid[b->q_at + k] = c->q[b->q_at + k] + h / 2 * rate[b->q_at + k];
+        for (int k = 0; k < b->nq; k++)
+            mid[b->q_at + k] = c->q[b->q_at + k] + h / 2 * rate[b->q_at + k];
         body_qdot(b, mid + b->q_at, um + b->u_at, rate + b->q_at);
         for (int k = 0; k < b->nq; k++) q[b->q_at + k] = c->q[b->q_at + k] + h * rate[b->q_at + k];
     }
     forward_kinematics(c->d, q, u, c->ud, out);
 }
 
-/* Central differences of positions are velocities, of velocities accelerations: so H, kappa, b, N and X belong
- * together. */
+/* Central differences of positions are velocities, of velocities accelerations: so H, kappa, b, N
+ * and X belong together. */
 static void motion_is_the_derivative_of_position(void **state)
 {
     (void)state;
@@ -69,14 +75,20 @@ static void motion_is_the_derivative_of_position(void **state)
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 3; k++) {
                     const real *w = now[i].w, *r = now[i].r;
-                    worst = larger(worst, fabsq((after[i].p[k] - before[i].p[k]) / (2 * h) - now[i].v[k]));
-                    worst = larger(worst, fabsq((after[i].v[k] - before[i].v[k]) / (2 * h) - now[i].a[k]));
-                    worst = larger(worst, fabsq((after[i].w[k] - before[i].w[k]) / (2 * h) - now[i].alpha[k]));
+                    worst = larger(worst,
+                                   fabsq((after[i].p[k] - before[i].p[k]) / (2 * h) - now[i].v[k]));
+                    worst = larger(worst,
+                                   fabsq((after[i].v[k] - before[i].v[k]) / (2 * h) - now[i].a[k]));
+                    worst = larger(
+                        worst, fabsq((after[i].w[k] - before[i].w[k]) / (2 * h) - now[i].alpha[k]));
                     /* r' = w~ r, column k */
                     for (int j = 0; j < 3; j++) {
                         int a = (j + 1) % 3, b = (j + 2) % 3;
                         real turn = w[a] * r[3 * b + k] - w[b] * r[3 * a + k];
-                        worst = larger(worst, fabsq((after[i].r[3 * j + k] - before[i].r[3 * j + k]) / (2 * h) - turn));
+                        worst =
+                            larger(worst, fabsq((after[i].r[3 * j + k] - before[i].r[3 * j + k]) /
+                                                    (2 * h) -
+                                                turn));
                     }
                 }
             assert_true(worst < 1e-13Q);
@@ -84,7 +96,8 @@ static void motion_is_the_derivative_of_position(void **state)
         }
 }
 
-/* [H W] is orthonormal; body_subspace and body_place give the same; pick and columns the same products. */
+/* [H W] is orthonormal; body_subspace and body_place give the same; pick and columns the same
+ * products. */
 static void subspaces_are_orthonormal(void **state)
 {
     (void)state;
@@ -134,7 +147,8 @@ static void projection_is_the_product_with_columns(void **state)
     }
 }
 
-/* body_step moves along q' to first order and keeps quaternions normalised; pure rotations are exact. */
+/* body_step moves along q' to first order and keeps quaternions normalised; pure rotations are
+ * exact. */
 static void steps_follow_the_group(void **state)
 {
     (void)state;
@@ -145,7 +159,8 @@ static void steps_follow_the_group(void **state)
         real q[7], rate[7], length = 0, norm = 0;
         int at = joint == JOINT_FLOATING ? 3 : 0;
         for (int k = 0; k < 4 && b->nq >= 4; k++) norm += c.q[at + k] * c.q[at + k];
-        for (int k = 0; k < 4 && b->nq >= 4; k++) c.q[at + k] /= sqrtq(norm); /* the scene's is rounded to double */
+        /* the scene's is rounded to double */
+        for (int k = 0; k < 4 && b->nq >= 4; k++) c.q[at + k] /= sqrtq(norm);
         body_qdot(b, c.q, c.u, rate);
         for (int k = 0; k < b->nq; k++) q[k] = c.q[k];
         body_step(b, q, c.u, h);

@@ -1,4 +1,5 @@
-/* test_laws.c - laws between the serial algorithms on seeded systems: every joint type, chains, trees, every base. */
+/* test_laws.c - laws between the serial algorithms on seeded systems: every joint type, chains,
+ * trees, every base. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,15 +15,17 @@
 
 static const struct dynamics_type *exact(void) { return dynamics_type_of(PRECISION_DOUBLE); }
 
-/* Run `law` on chains and trees of every joint type and of several sizes, on fixed, moving and floating bases. */
+/* Run `law` on chains and trees of every joint type and of several sizes, on fixed, moving and
+ * floating bases. */
 static void on_all_systems(void (*law)(struct scene *))
 {
     static const int size[] = {1, 2, 3, 7, 16, 31};
-    static const enum model_generator kind[] = {MODEL_SERIAL_CHAIN, MODEL_COMB, MODEL_STAR, MODEL_RANDOM_TREE,
-                                                MODEL_DENDRIMER};
+    static const enum model_generator kind[] = {MODEL_SERIAL_CHAIN, MODEL_COMB, MODEL_STAR,
+                                                MODEL_RANDOM_TREE, MODEL_DENDRIMER};
     for (int joint = JOINT_FIXED; joint <= JOINT_MIXED; joint++)
         for (int k = 0; k < 30; k++) {
-            struct model_spec spec = spec_random(kind[k % 5], size[k % 6], (enum model_joint)joint, (uint64_t)k + 1);
+            struct model_spec spec =
+                spec_random(kind[k % 5], size[k % 6], (enum model_joint)joint, (uint64_t)k + 1);
             spec.base = (enum model_base)(k % 3);
             if (joint == JOINT_FIXED && spec.base != BASE_FLOATING) continue;
             for (int i = 0; i < 6; i++) spec.base_acceleration[i] = 0.3 * (i - 2);
@@ -58,7 +61,8 @@ static void methods_agree(struct scene *s)
                     ->forward(s->model, s->state, FORWARD_ABA, s->a, reference, NULL, NULL, NULL));
     for (int k = 0; k < FORWARD_METHODS; k++) {
         struct forward_report report;
-        assert_true(exact()->forward(s->model, s->state, (enum forward_method)k, s->a, x, NULL, &report, NULL));
+        assert_true(exact()->forward(s->model, s->state, (enum forward_method)k, s->a, x, NULL,
+                                     &report, NULL));
         assert_true(relative_error(n, x, reference) < tolerance[k]);
         assert_false(report.fell_back);
     }
@@ -74,7 +78,8 @@ static void all_forward_methods_agree_with_quad_precision(void **state)
 static void mass_matrix_is_inverse_dynamics(struct scene *s)
 {
     int n = s->model->nu;
-    double *mass = TAKE(s->a, n * n, double), *zero = TAKE(s->a, n, double), *column = TAKE(s->a, n, double);
+    double *mass = TAKE(s->a, n * n, double), *zero = TAKE(s->a, n, double),
+           *column = TAKE(s->a, n, double);
     exact()->mass_matrix(s->model, s->state, s->a, mass, NULL);
     memset(s->state->qdd, 0, (size_t)n * sizeof *zero);
     exact()->inverse(s->model, s->state, s->a, zero, NULL);
@@ -108,7 +113,8 @@ static void fast_paths_equal_the_general_code(void **state)
 {
     (void)state;
     for (int n = 1; n < 60; n += 7) {
-        struct model_spec spec = spec_random(n % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, n, JOINT_REVOLUTE, 5);
+        struct model_spec spec =
+            spec_random(n % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, n, JOINT_REVOLUTE, 5);
         struct scene s = scene_of(&spec);
         struct dynamics *d = dynamics_take(s.model, s.a);
         double *x = TAKE(s.a, n, double), *y = TAKE(s.a, n, double);
@@ -124,7 +130,8 @@ static void fast_paths_equal_the_general_code(void **state)
     }
 }
 
-/* Joint accelerations of a free system do not feel a common velocity: u' of the base changes by -w x dv alone. */
+/* Joint accelerations of a free system do not feel a common velocity: u' of the base changes by -w
+ * x dv alone. */
 static void free_systems_do_not_feel_a_common_velocity(void **state)
 {
     (void)state;
@@ -145,7 +152,8 @@ static void free_systems_do_not_feel_a_common_velocity(void **state)
     scene_end(&s);
 }
 
-/* External wrench m g on every body, at its centre of mass and turned to body axes, is the same as gravity. */
+/* External wrench m g on every body, at its centre of mass and turned to body axes, is the same as
+ * gravity. */
 static void gravity_is_an_external_force(void **state)
 {
     (void)state;
@@ -164,8 +172,10 @@ static void gravity_is_an_external_force(void **state)
         const double *c = s.model->body[i].com;
         double *f = fext + 6 * i;
         for (int k = 0; k < 3; k++)
-            f[k] = s.model->body[i].mass * (pose[i].r[k] * g[0] + pose[i].r[3 + k] * g[1] + pose[i].r[6 + k] * g[2]);
-        f[3] = c[1] * f[2] - c[2] * f[1], f[4] = c[2] * f[0] - c[0] * f[2], f[5] = c[0] * f[1] - c[1] * f[0];
+            f[k] = s.model->body[i].mass *
+                   (pose[i].r[k] * g[0] + pose[i].r[3 + k] * g[1] + pose[i].r[6 + k] * g[2]);
+        f[3] = c[1] * f[2] - c[2] * f[1], f[4] = c[2] * f[0] - c[0] * f[2],
+        f[5] = c[0] * f[1] - c[1] * f[0];
     }
     memset(s.model->gravity, 0, sizeof g);
     exact()->inverse(s.model, s.state, s.a, without, NULL);
@@ -206,7 +216,8 @@ static void power_balances(void **state)
 static void precisions_agree(void **state)
 {
     (void)state;
-    static const double tolerance[] = {[PRECISION_DOUBLE] = 1e-13, [PRECISION_FLOAT] = 1e-4, [PRECISION_QUAD] = 0};
+    static const double tolerance[] = {
+        [PRECISION_DOUBLE] = 1e-13, [PRECISION_FLOAT] = 1e-4, [PRECISION_QUAD] = 0};
     struct model_spec spec = spec_random(MODEL_COMB, 14, JOINT_MIXED, 4);
     struct scene s = scene_of(&spec);
     int n = s.model->nu;

@@ -1,4 +1,5 @@
-/* test_loops.c - closed chains: two independent ways agree, loops do no work, redundancy, stabilisation, drift. */
+/* test_loops.c - closed chains: two independent ways agree, loops do no work, redundancy,
+ * stabilisation, drift. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,18 +27,20 @@ static struct scene four_bar(void)
     return scene_of(&spec);
 }
 
-static struct forward_report forward_by(const struct scene *s, enum forward_method method, double *qdd, double *lambda)
+static struct forward_report forward_by(const struct scene *s, enum forward_method method,
+                                        double *qdd, double *lambda)
 {
     struct forward_report report;
     assert_true(exact()->forward(s->model, s->state, method, s->a, qdd, lambda, &report, NULL));
     return report;
 }
 
-/* A moving ring or tree with extra random loops of every joint type, at a random pose (not closed: the accelerations
- * are defined all the same). */
+/* A moving ring or tree with extra random loops of every joint type, at a random pose (not closed:
+ * the accelerations are defined all the same). */
 static struct scene tangle(enum model_joint loop_joint, uint64_t seed)
 {
-    struct model_spec spec = spec_random(seed % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, 14, JOINT_SPHERICAL, seed);
+    struct model_spec spec =
+        spec_random(seed % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, 14, JOINT_SPHERICAL, seed);
     spec.base = seed % 3 ? BASE_FIXED : BASE_FLOATING;
     struct scene s = {.a = arena_create()};
     struct err e;
@@ -45,7 +48,8 @@ static struct scene tangle(enum model_joint loop_joint, uint64_t seed)
     struct model *tree = model_build(&spec, s.a, &e), *m = model_begin(s.a, NULL);
     for (int i = 0; i < tree->nbody; i++) assert_true(model_add_body(m, &tree->body[i], &e) >= 0);
     for (int k = 0; k < 2; k++) {
-        struct loop_def l = {.name = "loop", .body_a = k ? 3 : -1, .body_b = k ? 9 : 13, .joint = loop_joint};
+        struct loop_def l = {
+            .name = "loop", .body_a = k ? 3 : -1, .body_b = k ? 9 : 13, .joint = loop_joint};
         l.frame_a = (struct frame){{0.1, 0.2, -0.3, 0.9}, {0.3, 0.1, 0.2}};
         l.frame_b = (struct frame){{-0.4, 0.1, 0.5, 0.6}, {0.5, -0.1, 0.1}};
         assert_true(model_add_loop(m, &l, &e) >= 0);
@@ -57,8 +61,9 @@ static struct scene tangle(enum model_joint loop_joint, uint64_t seed)
     return s;
 }
 
-static const enum model_joint closing[] = {JOINT_FIXED,  JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_CYLINDRICAL,
-                                           JOINT_SPHERICAL, JOINT_PLANAR,   JOINT_SLOT,      JOINT_POINT_PLANE};
+static const enum model_joint closing[] = {JOINT_FIXED,       JOINT_REVOLUTE,   JOINT_PRISMATIC,
+                                           JOINT_CYLINDRICAL, JOINT_SPHERICAL,  JOINT_PLANAR,
+                                           JOINT_SLOT,        JOINT_POINT_PLANE};
 
 static void bordered_system_agrees_with_articulated_bodies(void **state)
 {
@@ -83,7 +88,8 @@ static void bordered_system_agrees_with_articulated_bodies(void **state)
         }
 }
 
-/* rho and its derivative: W^T rho at a time h later grows by h times the constraint's acceleration, which is zero. */
+/* rho and its derivative: W^T rho at a time h later grows by h times the constraint's acceleration,
+ * which is zero. */
 static void constraint_velocity_keeps_its_value(void **state)
 {
     (void)state;
@@ -91,7 +97,8 @@ static void constraint_velocity_keeps_its_value(void **state)
         struct scene s = tangle(closing[j], 2);
         struct dynamics *d = dynamics_take(s.model, s.a);
         int m = s.model->nrow;
-        double *before = TAKE(s.a, m, double), *after = TAKE(s.a, m, double), *qdd = TAKE(s.a, s.model->nu, double);
+        double *before = TAKE(s.a, m, double), *after = TAKE(s.a, m, double),
+               *qdd = TAKE(s.a, s.model->nu, double);
         double *q = s.state->q, *u = s.state->qd;
         const double h = 1e-6;
         forward_by(&s, FORWARD_ABA, qdd, NULL);
@@ -108,7 +115,8 @@ static void constraint_velocity_keeps_its_value(void **state)
         }
         double scale = 0;
         for (int k = 0; k < m; k++) scale = fmax(scale, fabs(after[k]));
-        for (int k = 0; k < m; k++) assert_true(fabs(after[k] - before[k]) / (2 * h) < 2e-8 * (1 + 100 * scale));
+        for (int k = 0; k < m; k++)
+            assert_true(fabs(after[k] - before[k]) / (2 * h) < 2e-8 * (1 + 100 * scale));
         scene_end(&s);
     }
 }
@@ -119,8 +127,9 @@ static void a_four_bar_has_three_redundant_constraints(void **state)
     struct scene s = four_bar();
     double x[3], reference[3], lambda[5];
     struct forward_report report;
-    assert_true(dynamics_type_of(PRECISION_QUAD)
-                    ->forward(s.model, s.state, FORWARD_CFA_DIRECT, s.a, reference, NULL, &report, NULL));
+    assert_true(
+        dynamics_type_of(PRECISION_QUAD)
+            ->forward(s.model, s.state, FORWARD_CFA_DIRECT, s.a, reference, NULL, &report, NULL));
     assert_int_equal(report.rank, 2);
     assert_int_equal(report.nrow, 5);
     for (int method = 0; method < FORWARD_METHODS; method++) {
@@ -167,8 +176,8 @@ static void in_plane_rows_replace_the_revolute_joint(void **state)
     scene_end(&s);
 }
 
-/* Two planar arms of three links from the grounds at -1.8 and 1.8, the second one mirrored and of its own mass; joined
- * at their tips when `closed`. */
+/* Two planar arms of three links from the grounds at -1.8 and 1.8, the second one mirrored and of
+ * its own mass; joined at their tips when `closed`. */
 static struct model *two_arms(struct arena *a, double second_mass, bool closed)
 {
     struct err e;
@@ -176,13 +185,18 @@ static struct model *two_arms(struct arena *a, double second_mass, bool closed)
     struct model *m = model_begin(a, NULL);
     for (int i = 0; i < 6; i++) {
         double side = i < 3 ? 1 : -1, mass = i < 3 ? 1 : second_mass;
-        struct body_def b = {.name = "link", .parent = i % 3 == 0 ? -1 : i - 1, .joint = JOINT_REVOLUTE,
-                             .axis = {0, 0, side}, .mass = mass, .com = {0.5 * side},
+        struct body_def b = {.name = "link",
+                             .parent = i % 3 == 0 ? -1 : i - 1,
+                             .joint = JOINT_REVOLUTE,
+                             .axis = {0, 0, side},
+                             .mass = mass,
+                             .com = {0.5 * side},
                              .inertia = {0.01 * mass, 0, 0, 0.1 * mass, 0, 0.1 * mass}};
         b.placement.p[0] = i % 3 == 0 ? -1.8 * side : side;
         assert_true(model_add_body(m, &b, &e) >= 0);
     }
-    struct loop_def l = {.name = "grasp", .body_a = 2, .body_b = 5, .nrow = 2, .row = {{1}, {0, 1}}};
+    struct loop_def l = {
+        .name = "grasp", .body_a = 2, .body_b = 5, .nrow = 2, .row = {{1}, {0, 1}}};
     l.frame_a.p[0] = 1, l.frame_b.p[0] = -1;
     if (closed) assert_true(model_add_loop(m, &l, &e) >= 0);
     m->gravity[1] = -9.81;
@@ -219,8 +233,8 @@ static void block_solve(const double *mass, int at, const double y[3], double x[
 }
 
 /* One arm by itself: a += J qdd of the free arm (2), L (2 x 2) += J M^-1 J^T. */
-static void arm_alone(double side, const double *q, const double *mass, int at, const double *free_qdd, double a[2],
-                      double L[2][2])
+static void arm_alone(double side, const double *q, const double *mass, int at,
+                      const double *free_qdd, double a[2], double L[2][2])
 {
     double J[2][3], x[3];
     tip_jacobian(side, q, J);
@@ -231,15 +245,17 @@ static void arm_alone(double side, const double *q, const double *mass, int at, 
     }
 }
 
-/* Two chains joined at their tips: the force on the second one is f = (L1 + L2)^-1 (a1 - a2) with the operational
- * L_i = J_i M_i^-1 J_i^T and a_i of the open chains: the sum, as the difference of mirrored arms would be singular. */
+/* Two chains joined at their tips: the force on the second one is f = (L1 + L2)^-1 (a1 - a2) with
+ * the operational L_i = J_i M_i^-1 J_i^T and a_i of the open chains: the sum, as the difference of
+ * mirrored arms would be singular. */
 static void two_arms_share_the_load_at_their_tips(void **state)
 {
     (void)state;
     for (int variant = 0; variant < 2; variant++) {
         struct arena *a = arena_create();
         const double q[3] = {0.9, -0.6, -0.5}, angle = q[0] + q[1] + q[2];
-        struct model *m = two_arms(a, variant ? 1.7 : 1, true), *open = two_arms(a, variant ? 1.7 : 1, false);
+        struct model *m = two_arms(a, variant ? 1.7 : 1, true),
+                     *open = two_arms(a, variant ? 1.7 : 1, false);
         struct state *s = state_take(m, a);
         for (int k = 0; k < 3; k++) s->q[k] = s->q[3 + k] = q[k];
         s->tau[0] = 3, s->tau[3] = 3 + variant;
@@ -251,8 +267,10 @@ static void two_arms_share_the_load_at_their_tips(void **state)
         arm_alone(-1, q, mass, 3, free_qdd + 3, a2, L);
         double dx = a1[0] - a2[0], dy = a1[1] - a2[1], det = L[0][0] * L[1][1] - L[0][1] * L[1][0];
         double fx = (L[1][1] * dx - L[0][1] * dy) / det, fy = (L[0][0] * dy - L[1][0] * dx) / det;
-        for (int method = 0; method < FORWARD_METHODS; method++) { /* lambda is in the axes of the first arm's tip */
-            assert_true(exact()->forward(m, s, (enum forward_method)method, a, x, lambda, NULL, NULL));
+        /* lambda is in the axes of the first arm's tip */
+        for (int method = 0; method < FORWARD_METHODS; method++) {
+            assert_true(
+                exact()->forward(m, s, (enum forward_method)method, a, x, lambda, NULL, NULL));
             assert_near(lambda[0], cos(angle) * fx + sin(angle) * fy, 1e-9);
             assert_near(lambda[1], cos(angle) * fy - sin(angle) * fx, 1e-9);
             for (int k = 0; variant == 0 && k < 3; k++) assert_near(x[k], x[3 + k], 1e-9);
@@ -262,7 +280,8 @@ static void two_arms_share_the_load_at_their_tips(void **state)
     }
 }
 
-/* Energy of a free four-bar: loop forces do no work; drift small, stabilisation and projection smaller. */
+/* Energy of a free four-bar: loop forces do no work; drift small, stabilisation and projection
+ * smaller. */
 static void loops_do_no_work_and_drift_is_mended(void **state)
 {
     (void)state;
@@ -276,7 +295,9 @@ static void loops_do_no_work_and_drift_is_mended(void **state)
         for (int k = 0; k < 200; k++) {
             assert_true(exact()->advance(s.model, s.state, STEP_RK4, 5e-3, 1, s.a, NULL));
             struct arena_mark mark = arena_mark(s.a);
-            if (way == 2) assert_true(loop_project(dynamics_take(s.model, s.a), s.state->q, s.state->qd, 1, NULL));
+            if (way == 2)
+                assert_true(
+                    loop_project(dynamics_take(s.model, s.a), s.state->q, s.state->qd, 1, NULL));
             arena_release(s.a, mark);
         }
         exact()->totals(s.model, s.state, s.a, &after);
@@ -291,11 +312,13 @@ static void loops_do_no_work_and_drift_is_mended(void **state)
     assert_true(drift[2] < 1e-13);
 }
 
-/* Rings close at q = 0 and start with velocities that the loop allows, whatever the joints and the base. */
+/* Rings close at q = 0 and start with velocities that the loop allows, whatever the joints and the
+ * base. */
 static void rings_start_consistent(void **state)
 {
     (void)state;
-    static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_SPHERICAL, JOINT_CYLINDRICAL, JOINT_UNIVERSAL};
+    static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_SPHERICAL, JOINT_CYLINDRICAL,
+                                             JOINT_UNIVERSAL};
     for (int j = 0; j < 4; j++)
         for (int n = 3; n < 12; n += 4)
             for (int floating = 0; floating < 2; floating++) {

@@ -1,4 +1,5 @@
-/* test_model.c - models: impossible bodies refused by name and line, index tables, generated scenes. */
+/* test_model.c - models: impossible bodies refused by name and line, index tables, generated
+ * scenes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,8 +15,13 @@
 
 static struct body_def good_body(void)
 {
-    return (struct body_def){.name = "arm", .parent = -1, .joint = JOINT_REVOLUTE, .axis = {0, 0, 1}, .mass = 2,
-                             .inertia = {0.2, 0.01, 0, 0.3, 0, 0.35}, .line = 17};
+    return (struct body_def){.name = "arm",
+                             .parent = -1,
+                             .joint = JOINT_REVOLUTE,
+                             .axis = {0, 0, 1},
+                             .mass = 2,
+                             .inertia = {0.2, 0.01, 0, 0.3, 0, 0.35},
+                             .line = 17};
 }
 
 /* The message with which a model of this one body is refused; "" when it is accepted. */
@@ -31,14 +37,14 @@ static void refusal(struct body_def b, bool allow, char *text, size_t size)
     arena_destroy(a);
 }
 
-#define assert_refused(change, words)                                                                                  \
-    do {                                                                                                               \
-        struct body_def b = good_body();                                                                               \
-        char said[800];                                                                                                \
-        change;                                                                                                        \
-        refusal(b, false, said, sizeof said);                                                                          \
-        assert_non_null(strstr(said, words));                                                                          \
-        assert_non_null(strstr(said, "'arm'"));                                                                        \
+#define assert_refused(change, words)                                                              \
+    do {                                                                                           \
+        struct body_def b = good_body();                                                           \
+        char said[800];                                                                            \
+        change;                                                                                    \
+        refusal(b, false, said, sizeof said);                                                      \
+        assert_non_null(strstr(said, words));                                                      \
+        assert_non_null(strstr(said, "'arm'"));                                                    \
     } while (0)
 
 static void impossible_bodies_are_refused_by_name_and_line(void **state)
@@ -176,7 +182,8 @@ static void the_same_seed_gives_the_same_scene_and_another_a_different_one(void 
     scene_end(&a), scene_end(&b), scene_end(&c);
 }
 
-/* A polymer in molecular units and the same in SI have accelerations that differ by the unit of time alone. */
+/* A polymer in molecular units and the same in SI have accelerations that differ by the unit of
+ * time alone. */
 static void molecular_units_are_a_change_of_units(void **state)
 {
     (void)state;
@@ -202,8 +209,10 @@ static void molecular_units_are_a_change_of_units(void **state)
     struct state *big = state_take(si, s.a);
     double *fext = state_fext_need(big, si, s.a);
     memcpy(big->q, s.state->q, (size_t)m->nq * sizeof(double));
-    for (int k = 0; k < m->nu; k++) big->qd[k] = s.state->qd[k] / m->second, big->tau[k] = s.state->tau[k] * torque;
-    for (int k = 0; k < 6 * m->nbody; k++) fext[k] = s.state->fext[k] * (k % 6 < 3 ? torque / m->metre : torque);
+    for (int k = 0; k < m->nu; k++)
+        big->qd[k] = s.state->qd[k] / m->second, big->tau[k] = s.state->tau[k] * torque;
+    for (int k = 0; k < 6 * m->nbody; k++)
+        fext[k] = s.state->fext[k] * (k % 6 < 3 ? torque / m->metre : torque);
     for (int method = FORWARD_ABA; method < FORWARD_METHODS; method++) {
         const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
         assert_true(t->forward(m, s.state, (enum forward_method)method, s.a, x, NULL, NULL, NULL));
@@ -246,7 +255,8 @@ static void springs_and_dampers_act(void **state)
     scene_end(&s);
 }
 
-/* The same scene 2^-35 as long, 2^-90 as heavy and 2^-20 as fast is the same numbers in units of its own. */
+/* The same scene 2^-35 as long, 2^-90 as heavy and 2^-20 as fast is the same numbers in units of
+ * its own. */
 static void units_of_small_links_round_nothing(void **state)
 {
     (void)state;
@@ -273,22 +283,26 @@ static void units_of_small_links_round_nothing(void **state)
     assert_memory_equal(a.state->q, b.state->q, (size_t)a.model->nq * sizeof(double));
     assert_memory_equal(a.state->qd, b.state->qd, (size_t)a.model->nu * sizeof(double));
     assert_memory_equal(a.state->tau, b.state->tau, (size_t)a.model->nu * sizeof(double));
-    assert_memory_equal(a.state->fext, b.state->fext, (size_t)(6 * a.model->nbody) * sizeof(double));
+    assert_memory_equal(a.state->fext, b.state->fext,
+                        (size_t)(6 * a.model->nbody) * sizeof(double));
     scene_end(&a);
     scene_end(&b);
 }
 
-/* Molecules in SI units are beyond single precision (inertias of 1e-47); in their own they are not. */
+/* Molecules in SI units are beyond single precision (inertias of 1e-47); in their own they are
+ * not. */
 static void single_precision_reaches_molecules_and_denormals(void **state)
 {
     (void)state;
     struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 16, JOINT_REVOLUTE, 3);
-    spec.length = 1.5e-10, spec.radius = 1e-11, spec.mass = 2.3e-26, spec.torque = 1e-21, spec.external_force = 0;
+    spec.length = 1.5e-10, spec.radius = 1e-11, spec.mass = 2.3e-26, spec.torque = 1e-21,
+    spec.external_force = 0;
     for (int k = 0; k < 2; k++) {
         struct scene s = scene_of(&spec);
         double single[16], right[16];
-        assert_true(dynamics_type_of(PRECISION_FLOAT)
-                        ->forward(s.model, s.state, FORWARD_CFA_DIRECT, s.a, single, NULL, NULL, NULL));
+        assert_true(
+            dynamics_type_of(PRECISION_FLOAT)
+                ->forward(s.model, s.state, FORWARD_CFA_DIRECT, s.a, single, NULL, NULL, NULL));
         assert_true(dynamics_type_of(PRECISION_QUAD)
                         ->forward(s.model, s.state, FORWARD_ABA, s.a, right, NULL, NULL, NULL));
         assert_true(relative_error(16, single, right) < 1e-3);

@@ -1,4 +1,5 @@
-/* test_operations.c - every operation executes the flops that it declares beside itself; compiled for both spaces. */
+/* test_operations.c - every operation executes the flops that it declares beside itself; compiled
+ * for both spaces. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,16 +26,16 @@ static void compare(const char *call, const struct work *declared)
     const struct work done = flop_meter_stop();
     if (declared->flop != done.flop || declared->div != done.div || declared->sqrt != done.sqrt ||
         declared->trig != done.trig)
-        fail_msg("%s: declared %d flop, %d div, %d sqrt, %d trig; executed %d, %d, %d, %d", call, (int)declared->flop,
-                 (int)declared->div, (int)declared->sqrt, (int)declared->trig, (int)done.flop, (int)done.div,
-                 (int)done.sqrt, (int)done.trig);
+        fail_msg("%s: declared %d flop, %d div, %d sqrt, %d trig; executed %d, %d, %d, %d", call,
+                 (int)declared->flop, (int)declared->div, (int)declared->sqrt, (int)declared->trig,
+                 (int)done.flop, (int)done.div, (int)done.sqrt, (int)done.trig);
 }
 
-#define EXECUTES(call, ...)                                                                                            \
-    do {                                                                                                               \
-        flop_meter_start();                                                                                            \
-        (void)(call);                                                                                                  \
-        compare(#call, &(struct work){.flop = __VA_ARGS__});                                                           \
+#define EXECUTES(call, ...)                                                                        \
+    do {                                                                                           \
+        flop_meter_start();                                                                        \
+        (void)(call);                                                                              \
+        compare(#call, &(struct work){.flop = __VA_ARGS__});                                       \
     } while (0)
 
 /* x, y, z: room for any operand. */
@@ -94,18 +95,19 @@ static void vectors_execute_what_they_declare(void **state)
     EXECUTES(sym6_add(&t, &s), SYM6_ADD_FLOP);
 }
 
-/* The small operators add what they did to an account; general inverse and solution are charged by formula. */
+/* The small operators add what they did to an account; general inverse and solution are charged by
+ * formula. */
 static void small_matrices_execute_what_they_declare(void **state)
 {
     (void)state;
     struct work w;
-#define ACCOUNTS(call)                                                                                                 \
-    do {                                                                                                               \
-        fill();                                                                                                        \
-        w = (struct work){0};                                                                                          \
-        flop_meter_start();                                                                                            \
-        (void)(call);                                                                                                  \
-        compare(#call, &w);                                                                                            \
+#define ACCOUNTS(call)                                                                             \
+    do {                                                                                           \
+        fill();                                                                                    \
+        w = (struct work){0};                                                                      \
+        flop_meter_start();                                                                        \
+        (void)(call);                                                                              \
+        compare(#call, &w);                                                                        \
     } while (0)
     for (int c = 1; c <= 6; c++)
         for (int m = 1; m <= 6; m++) {
@@ -151,8 +153,8 @@ static void check_body(const struct body *b, const real *q, const real *u)
     EXECUTES(body_load(b, (const double[6]){1, 2, 3, 4, 5, 6}, force), body_load_flops(b));
     EXECUTES(body_spring(b, q, u, y), (uint64_t)(b->has_spring ? BODY_SPRING_FLOP : 0));
     EXECUTES(body_qdot(b, q, u, x), c->qdot.flop, .div = c->qdot.div, .trig = c->qdot.trig);
-    EXECUTES(body_step(b, own, u, (real)0.1), c->step.flop, .div = c->step.div, .sqrt = c->step.sqrt,
-             .trig = c->step.trig);
+    EXECUTES(body_step(b, own, u, (real)0.1), c->step.flop, .div = c->step.div,
+             .sqrt = c->step.sqrt, .trig = c->step.trig);
 #if SPACE == 6
     EXECUTES(subspace_project(&pose.s, false, x, &pose.s, false, y), (uint64_t)c->hh);
     EXECUTES(subspace_project(&pose.s, false, x, &pose.s, true, y), (uint64_t)c->hw);
@@ -183,7 +185,8 @@ static void bodies_execute_what_they_declare(void **state)
         check_bodies(s.model, s.state, s.a);
         scene_end(&s);
 #else
-        const struct planar_options o = {.n = 4, .joint = JOINT_MIXED, .springs = n % 2, .seed = (uint64_t)n};
+        const struct planar_options o = {
+            .n = 4, .joint = JOINT_MIXED, .springs = n % 2, .seed = (uint64_t)n};
         struct arena *a = arena_create();
         const struct model *m = planar_model(&o, a);
         check_bodies(m, planar_state(&o, m, a), a);

@@ -1,4 +1,5 @@
-/* test_planar.c - planar scenes are found and only they; serial dynamics in three components equal those in six. */
+/* test_planar.c - planar scenes are found and only they; serial dynamics in three components equal
+ * those in six. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -29,7 +30,8 @@ static double relative_error(int n, const double *x, const double *reference)
 static void serial_codes_agree_with_the_spatial_ones(void **state)
 {
     (void)state;
-    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR, JOINT_MIXED};
+    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR,
+                                              JOINT_MIXED};
     double tau_error = 0, qdd_error = 0;
     for (int n = 1; n <= 40; n += n < 8 ? 1 : 8)
         for (int k = 0; k < 16; k++) {
@@ -48,7 +50,8 @@ static void serial_codes_agree_with_the_spatial_ones(void **state)
             dynamics_type_of(PRECISION_DOUBLE)->inverse(m, s, a, y, &spatial);
             tau_error = fmax(tau_error, relative_error(m->nu, x, y));
             assert_true(planar_forward(m, s, a, x, &w));
-            assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, NULL, &spatial));
+            assert_true(dynamics_type_of(PRECISION_DOUBLE)
+                            ->forward(m, s, FORWARD_ABA, a, y, NULL, NULL, &spatial));
             qdd_error = fmax(qdd_error, relative_error(m->nu, x, y));
             assert_true(w.flop < spatial.flop / 3 || n < 4);
             arena_destroy(a);
@@ -79,7 +82,8 @@ static void closed_chains_agree_too(void **state)
         struct work w = {0};
         struct forward_report report = {0};
         assert_true(planar_forward(m, s, a, x, &w));
-        assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
+        assert_true(dynamics_type_of(PRECISION_DOUBLE)
+                        ->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
         if (report.rank == 2 * (o.twins ? (o.loops + 1) / 2 : o.loops)) {
             error = fmax(error, relative_error(m->nu, x, y));
             compared++;
@@ -90,7 +94,8 @@ static void closed_chains_agree_too(void **state)
     assert_true(compared > 20 && error < 1e-9);
 }
 
-/* The loop joins the base and a body without mass, whose child has some: there is nothing to scale its equation by. */
+/* The loop joins the base and a body without mass, whose child has some: there is nothing to scale
+ * its equation by. */
 static void a_loop_on_a_massless_body_has_an_answer(void **state)
 {
     (void)state;
@@ -104,7 +109,8 @@ static void a_loop_on_a_massless_body_has_an_answer(void **state)
         def.placement.p[0] = i > 0;
         def.placement.quat[3] = 1;
         def.com[0] = i == 1 ? 0 : 0.5;
-        for (int k = 0; k < 6; k++) def.inertia[k] = i != 1 && (k == 0 || k == 3 || k == 5) ? 0.1 : 0;
+        for (int k = 0; k < 6; k++)
+            def.inertia[k] = i != 1 && (k == 0 || k == 3 || k == 5) ? 0.1 : 0;
         assert_true(model_add_body(m, &def, &e) >= 0);
     }
     struct loop_def def = {.name = "closure", .body_a = -1, .body_b = 1, .joint = JOINT_REVOLUTE};
@@ -120,13 +126,15 @@ static void a_loop_on_a_massless_body_has_an_answer(void **state)
     struct work w = {0};
     struct forward_report report = {0};
     assert_true(planar_forward(m, s, a, x, &w));
-    assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
+    assert_true(
+        dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
     for (int i = 0; i < m->nu; i++) assert_true(isfinite(x[i]));
     assert_true(relative_error(m->nu, x, y) < 1e-9);
     arena_destroy(a);
 }
 
-/* Operations of one body more in a chain of revolute joints, as counted by hand in planar_dynamics.c. */
+/* Operations of one body more in a chain of revolute joints, as counted by hand in
+ * planar_dynamics.c. */
 static void each_body_costs_what_was_counted(void **state)
 {
     (void)state;
@@ -165,7 +173,8 @@ static void planar_scenes_are_found(void **state)
     char why[sizeof(struct err)];
     for (int k = 0; k < 64; k++) {
         struct planar_options o = {
-            .n = 3 + k, .tree = k & 1, .joint = JOINT_MIXED, .loads = true, .loops = k & 3, .seed = (uint64_t)k};
+            .n = 3 + k, .tree = k & 1, .joint = JOINT_MIXED, .loads = true, .loops = k & 3,
+            .seed = (uint64_t)k};
         if (!planar(&o, PRECISION_DOUBLE, why)) fail_msg("seed %d: %s", k, why);
         /* doubles describe a plane anyhow in space to their own rounding only */
         assert_false(planar(&o, PRECISION_QUAD, why));
@@ -186,7 +195,8 @@ static void a_tilted_axis_leaves_the_plane(void **state)
 }
 
 /* A chain as the generators make it. */
-static struct model_spec generated(enum model_generator generator, enum model_axes axes, enum model_base base)
+static struct model_spec generated(enum model_generator generator, enum model_axes axes,
+                                   enum model_base base)
 {
     return (struct model_spec){.generator = generator,
                                .nbody = 9,

@@ -1,4 +1,5 @@
-/* test_rest.c - what is at rest has the same serial answers without its velocity terms, for less work. */
+/* test_rest.c - what is at rest has the same serial answers without its velocity terms, for less
+ * work. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +22,8 @@ static void expect_less(const struct work *less, const struct work *more)
     assert_true(less->flop < more->flop && less->trig == more->trig && less->call == more->call);
 }
 
-/* Inverse and forward dynamics of one scene by every method in one precision, with velocity terms and without. */
+/* Inverse and forward dynamics of one scene by every method in one precision, with velocity terms
+ * and without. */
 static void compare(struct scene *s, enum precision precision)
 {
     const struct dynamics_type *t = dynamics_type_of(precision);
@@ -37,10 +39,11 @@ static void compare(struct scene *s, enum precision precision)
     for (int m = 0; m < FORWARD_METHODS; m++) {
         more = less = (struct work){0};
         s->state->at_rest = false;
-        const bool good = t->forward(s->model, s->state, (enum forward_method)m, s->a, with, NULL, NULL, &more);
+        const bool good =
+            t->forward(s->model, s->state, (enum forward_method)m, s->a, with, NULL, NULL, &more);
         s->state->at_rest = true;
-        assert_true(good ==
-                    t->forward(s->model, s->state, (enum forward_method)m, s->a, without, NULL, NULL, &less));
+        assert_true(good == t->forward(s->model, s->state, (enum forward_method)m, s->a, without,
+                                       NULL, NULL, &less));
         if (!good) continue;
         expect_equal(without, with, nu);
         expect_less(&less, &more);
@@ -50,15 +53,16 @@ static void compare(struct scene *s, enum precision precision)
 static void velocity_terms_of_zero_change_no_digit(void **state)
 {
     (void)state;
-    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE, MODEL_FOUR_BAR, MODEL_RING};
+    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE,
+                                                     MODEL_FOUR_BAR, MODEL_RING};
     static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_MIXED, JOINT_SPHERICAL};
     for (int g = 0; g < 4; g++)
         for (int j = 0; j < 3; j++)
             for (uint64_t seed = 1; seed < 6; seed++) {
                 const bool closed = g > 1;
                 if (closed && joint[j] != JOINT_REVOLUTE) continue;
-                struct model_spec spec =
-                    spec_random(generator[g], generator[g] == MODEL_FOUR_BAR ? 3 : 9, joint[j], seed);
+                struct model_spec spec = spec_random(
+                    generator[g], generator[g] == MODEL_FOUR_BAR ? 3 : 9, joint[j], seed);
                 spec.rate = 0;
                 if (seed % 2) spec.external_force = 0;
                 if (seed == 3) memset(spec.gravity, 0, sizeof spec.gravity);

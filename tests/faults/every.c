@@ -116,9 +116,7 @@ static bool ends_in(const char *s, const char *end)
     return n >= m && strcmp(s + n - m, end) == 0;
 }
 
-/* --- what is left
- * -----------------------------------------------------------------------------------------------
- */
+/* --- what is left ----------------------------------------------------------------------------- */
 
 /* The rows of a query as a print; *bad when it cannot be asked. */
 static unsigned long long rows_of(sqlite3 *db, const char *sql, bool *bad)
@@ -153,10 +151,9 @@ static unsigned long long look_at_database(const char *path, char *why, size_t s
     unsigned long long print =
         rows_of(db,
                 "SELECT r.config_hash, r.status, r.makespan_ps, r.digest, (SELECT count(*) FROM "
-                "stage WHERE run_id = r.id),"
-                " (SELECT count(*) FROM run_setting WHERE run_id = r.id), (SELECT count(*) FROM "
-                "baseline WHERE run_id = r.id),"
-                " (SELECT count(*) FROM error_check WHERE run_id = r.id) FROM run r ORDER BY 1",
+                "stage WHERE run_id = r.id), (SELECT count(*) FROM run_setting WHERE run_id = "
+                "r.id), (SELECT count(*) FROM baseline WHERE run_id = r.id), (SELECT count(*) FROM "
+                "error_check WHERE run_id = r.id) FROM run r ORDER BY 1",
                 &bad);
     if (bad) snprintf(why, size, "%s cannot be read: %s", path, sqlite3_errmsg(db));
     sqlite3_close(db);
@@ -201,9 +198,7 @@ static const unsigned long long *find(const struct outcome *o, const char *name)
     return NULL;
 }
 
-/* --- a command
- * --------------------------------------------------------------------------------------------------
- */
+/* --- a command -------------------------------------------------------------------------------- */
 
 static void read_back(const char *path, char text[TEXT])
 {
@@ -256,8 +251,7 @@ static void give(const char *line, const struct fault *f, long at, struct outcom
     look(o);
 }
 
-/* --- the judgement
- * ---------------------------------------------------------------------------------------------- */
+/* --- the judgement ---------------------------------------------------------------------------- */
 
 static bool is_one_of(int status, const char *statuses)
 {
@@ -328,9 +322,7 @@ static const char *judge(const struct command *c, const struct fault *f,
     return NULL;
 }
 
-/* --- all of them
- * ------------------------------------------------------------------------------------------------
- */
+/* --- all of them ------------------------------------------------------------------------------ */
 
 static void prepare(void)
 {

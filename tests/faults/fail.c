@@ -6,11 +6,11 @@
  *     FAULT_COUNT=FILE                    how many there were, at the end of a process that ends by
  * itself
  *
- * Only in processes called $FAULT_PROGRAM: what these start in turn goes on as usual, but for reads, which a program
- * makes before it has loaded this library. Allocations,
- * opening, names, processes, pipes and mappings are caught by their functions; writes and reads,
- * which stdio makes without any function that could be replaced, by the system itself: a seccomp
- * filter turns them into SIGSYS, whose handler makes the call, or does not. */
+ * Only in processes called $FAULT_PROGRAM: what these start in turn goes on as usual, but for
+ * reads, which a program makes before it has loaded this library. Allocations, opening, names,
+ * processes, pipes and mappings are caught by their functions; writes and reads, which stdio makes
+ * without any function that could be replaced, by the system itself: a seccomp filter turns them
+ * into SIGSYS, whose handler makes the call, or does not. */
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -58,9 +58,7 @@ static int fails(enum kind kind)
     return 1;
 }
 
-/* --- functions
- * --------------------------------------------------------------------------------------------------
- */
+/* --- functions -------------------------------------------------------------------------------- */
 
 /* The C library's own, which are there before this library can look for anything. */
 extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t),
@@ -136,12 +134,11 @@ REPLACE_OPEN(open64)
 REPLACE_FCNTL(fcntl)
 REPLACE_FCNTL(fcntl64)
 
-/* --- system calls
- * -----------------------------------------------------------------------------------------------
- */
+/* --- system calls ----------------------------------------------------------------------------- */
 
 #ifdef __x86_64__
-/* The filter lets calls pass that have this in their sixth argument, which none of these calls has. */
+/* The filter lets calls pass that have this in their sixth argument, which none of these calls
+ * has. */
 enum { MARK = 0x6d696d64 };
 static long make_call(long number, long a, long b, long c, long d)
 {
@@ -167,7 +164,8 @@ static long half(long number, const greg_t *r)
         part.iov_len = part.iov_len > 1 ? part.iov_len / 2 : part.iov_len;
         return make_call(number, r[REG_RDI], (long)&part, 1, 0);
     default:
-        return make_call(number, r[REG_RDI], r[REG_RSI], r[REG_RDX] > 1 ? r[REG_RDX] / 2 : r[REG_RDX], r[REG_R10]);
+        return make_call(number, r[REG_RDI], r[REG_RSI],
+                         r[REG_RDX] > 1 ? r[REG_RDX] / 2 : r[REG_RDX], r[REG_R10]);
     }
 }
 
@@ -190,16 +188,19 @@ static void hear_calls(void)
     sigaction(SIGSYS, &act, NULL);
 }
 
-/* Calls of `numbers` without the mark become signals, here and in what this process starts. A handler is entered by a
- * signal that is not blocked: where the C library blocks all of them it makes none of these calls. */
+/* Calls of `numbers` without the mark become signals, here and in what this process starts. A
+ * handler is entered by a signal that is not blocked: where the C library blocks all of them it
+ * makes none of these calls. */
 static void catch_calls(const int *numbers, int n)
 {
     struct sock_filter program[16];
     int k = 0;
-    program[k++] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, args[5]));
+    program[k++] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS,
+                                                offsetof(struct seccomp_data, args[5]));
     program[k++] = (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, MARK, 0, 1);
     program[k++] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
-    program[k++] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr));
+    program[k++] =
+        (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr));
     for (int i = 0; i < n; i++) {
         program[k++] =
             (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)numbers[i], 0, 1);
@@ -217,8 +218,7 @@ static void hear_calls(void) {}
 static void catch_calls(const int *numbers, int n) { (void)numbers, (void)n, _exit(99); }
 #endif
 
-/* --- beginning and end
- * ------------------------------------------------------------------------------------------ */
+/* --- beginning and end ------------------------------------------------------------------------ */
 
 static const struct {
     const char *name;

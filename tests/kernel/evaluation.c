@@ -115,7 +115,8 @@ static void go(const struct program_run *r, struct arena *a, struct evaluation *
     assert_int_equal(v->counts.unread, 0);
 }
 
-/* open_scene: whether a scene is planar is asked in double precision, whatever the program computes in. */
+/* open_scene: whether a scene is planar is asked in double precision, whatever the program computes
+ * in. */
 static void open_scene(struct program_run *r, const struct model *model, const struct state *state,
                        struct job_omit omit, bool watch)
 {
@@ -132,8 +133,9 @@ static void open_scene(struct program_run *r, const struct model *model, const s
     r->rank = &d->kernel->rank;
 }
 
-static struct evaluation evaluate_as(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                     struct job_omit omit, bool watch, struct arena *a)
+static struct evaluation evaluate_as(const struct run_spec *spec, const struct model *model,
+                                     const struct state *state, struct job_omit omit, bool watch,
+                                     struct arena *a)
 {
     struct err e = {0};
     struct evaluation v = {0};
@@ -151,20 +153,21 @@ static struct evaluation evaluate_as(const struct run_spec *spec, const struct m
     return v;
 }
 
-struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                    struct job_omit omit, struct arena *a)
+struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model,
+                                    const struct state *state, struct job_omit omit,
+                                    struct arena *a)
 {
     return evaluate_as(spec, model, state, omit, true, a);
 }
 
-struct evaluation evaluate_unwatched(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                     struct arena *a)
+struct evaluation evaluate_unwatched(const struct run_spec *spec, const struct model *model,
+                                     const struct state *state, struct arena *a)
 {
     return evaluate_as(spec, model, state, (struct job_omit){0}, false, a);
 }
 
-struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                 struct arena *a)
+struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model,
+                                 const struct state *state, struct arena *a)
 {
     return evaluate_omitting(spec, model, state, (struct job_omit){0}, a);
 }

@@ -1,5 +1,5 @@
-/* test_blocks.c - distributed block tridiagonal solvers against block Thomas: orders 0 to 6, several right-hand sides,
- * further ones with kept factors, any split. */
+/* test_blocks.c - distributed block tridiagonal solvers against block Thomas: orders 0 to 6,
+ * several right-hand sides, further ones with kept factors, any split. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,10 +36,12 @@ static double *row_of(double *all, int m, int i) { return all + i * BLOCK_MAX * 
 static void pose(struct posed *p, struct random *g, int n, int P, int m, int order)
 {
     p->m = m;
-    p->layout =
-        (struct row_layout){.nrow = n, .nrank = P, .first = p->first, .size = p->size, .interface = p->interface};
-    for (int i = 0; i < n; i++) p->size[i] = (unsigned char)(order >= 0 ? order : (int)random_below(g, 7));
-    for (int i = 0; i < n; i++) p->layout.largest = p->size[i] > p->layout.largest ? p->size[i] : p->layout.largest;
+    p->layout = (struct row_layout){
+        .nrow = n, .nrank = P, .first = p->first, .size = p->size, .interface = p->interface};
+    for (int i = 0; i < n; i++)
+        p->size[i] = (unsigned char)(order >= 0 ? order : (int)random_below(g, 7));
+    for (int i = 0; i < n; i++)
+        p->layout.largest = p->size[i] > p->layout.largest ? p->size[i] : p->layout.largest;
     for (int k = 0; k <= P; k++) p->first[k] = k;
     for (int extra = n - P; extra > 0; extra--)
         for (int k = (int)random_below(g, (uint64_t)P) + 1; k <= P; k++) p->first[k]++;
@@ -47,8 +49,10 @@ static void pose(struct posed *p, struct random *g, int n, int P, int m, int ord
     for (int i = 0; i < n; i++) {
         for (int r = 0; r < p->size[i]; r++)
             for (int c = 0; c <= r; c++)
-                p->D[i * BLOCK_PACKED + packed_index(r, c)] = random_uniform(g, -1, 1) + (r == c ? 9 : 0);
-        for (int k = 0; k < BLOCK_FULL; k++) p->L[i * BLOCK_FULL + k] = random_uniform(g, -0.5, 0.5);
+                p->D[i * BLOCK_PACKED + packed_index(r, c)] =
+                    random_uniform(g, -1, 1) + (r == c ? 9 : 0);
+        for (int k = 0; k < BLOCK_FULL; k++)
+            p->L[i * BLOCK_FULL + k] = random_uniform(g, -0.5, 0.5);
         for (int k = 0; k < p->size[i] * m; k++)
             for (int s = 0; s < 2; s++) row_of(p->r[s], m, i)[k] = random_uniform(g, -1, 1);
     }
@@ -84,17 +88,21 @@ static void solve(struct comm *c, void *context)
         for (int i = b->lo; i < b->hi; i++) {
             const int before = i > 0 ? p->size[i - 1] : 0, n = p->size[i];
             if (pass == 0) {
-                memcpy(blocks_row_D(b, i), p->D + i * BLOCK_PACKED, (size_t)packed_size(n) * sizeof(double));
-                memcpy(blocks_row_L(b, i), p->L + i * BLOCK_FULL, (size_t)(n * before) * sizeof(double));
+                memcpy(blocks_row_D(b, i), p->D + i * BLOCK_PACKED,
+                       (size_t)packed_size(n) * sizeof(double));
+                memcpy(blocks_row_L(b, i), p->L + i * BLOCK_FULL,
+                       (size_t)(n * before) * sizeof(double));
             }
             memcpy(blocks_row_r(b, i), row_of(p->r[pass], m, i), (size_t)(n * m) * sizeof(double));
         }
         if (pass == 0) blocks_solve(b, &w);
         else blocks_resolve(b, &w);
         for (int i = b->lo; i < b->hi; i++)
-            memcpy(row_of(p->found[pass], m, i), blocks_row_r(b, i), (size_t)(p->size[i] * m) * sizeof(double));
+            memcpy(row_of(p->found[pass], m, i), blocks_row_r(b, i),
+                   (size_t)(p->size[i] * m) * sizeof(double));
         for (int k = 0; b->lo > 0 && k < p->size[b->lo - 1] * m; k++)
-            p->worst_left = fmax(p->worst_left, fabs(b->left[k] - row_of(p->x[pass], m, b->lo - 1)[k]));
+            p->worst_left =
+                fmax(p->worst_left, fabs(b->left[k] - row_of(p->x[pass], m, b->lo - 1)[k]));
     }
     assert_false(b->broken);
 }
@@ -112,7 +120,8 @@ static void check(struct posed *p, struct random *g, int n, int P, int m, int or
     for (int pass = 0; pass <= p->again; pass++)
         for (int i = 0; i < n; i++)
             for (int k = 0; k < p->size[i] * m; k++)
-                assert_true(fabs(row_of(p->found[pass], m, i)[k] - row_of(p->x[pass], m, i)[k]) < 1e-13);
+                assert_true(fabs(row_of(p->found[pass], m, i)[k] - row_of(p->x[pass], m, i)[k]) <
+                            1e-13);
     assert_true(p->worst_left < 1e-13);
     arena_destroy(p->arena);
 }

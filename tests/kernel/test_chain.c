@@ -1,4 +1,5 @@
-/* test_chain.c - parallel dynamics of chains equals the serial algorithms: every joint, size, split and solver. */
+/* test_chain.c - parallel dynamics of chains equals the serial algorithms: every joint, size, split
+ * and solver. */
 #include <setjmp.h>
 #include "config.h"
 
@@ -16,8 +17,9 @@ static void check(const struct run_spec *spec, double tau, double qdd)
     struct arena *a = arena_create();
     const struct evaluation v = evaluate(spec, a);
     if (!(v.tau_error < tau && v.qdd_error < qdd))
-        fail_msg("n %d P %d joint %d solver %d formulation %d: tau %.1e qdd %.1e", spec->model.nbody, spec->nrank,
-                 spec->model.joint, spec->kernel.solver, spec->kernel.formulation, v.tau_error, v.qdd_error);
+        fail_msg("n %d P %d joint %d solver %d formulation %d: tau %.1e qdd %.1e",
+                 spec->model.nbody, spec->nrank, spec->model.joint, spec->kernel.solver,
+                 spec->kernel.formulation, v.tau_error, v.qdd_error);
     arena_destroy(a);
 }
 

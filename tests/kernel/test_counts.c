@@ -46,7 +46,8 @@ static void inverse_dynamics_of_128_bodies(void **state)
     assert_int_equal(r.stage_bytes[1], 769 * 48 + (128 * 7 - 254) * 288);
 }
 
-/* solve_stage: what the block solver of a chain of 128 revolute joints sends, without the two neighbour messages. */
+/* solve_stage: what the block solver of a chain of 128 revolute joints sends, without the two
+ * neighbour messages. */
 static struct many_ranks_result solver_counts(enum solver solver)
 {
     struct run_spec spec = evaluation_spec("forward", 128, 128);
@@ -99,7 +100,8 @@ static void the_solvers_work_adds_up(void **state)
         for (int d = 1; d < P; d *= 2) edges += 2 * (P - d > d ? d : P - d);
         struct run_spec spec = evaluation_spec("forward", P, P);
         const struct many_ranks_result r = counts_of(spec);
-        const uint64_t expected = (uint64_t)(915 * (P * lg - edges) + 385 * edges + 20 * 2 * pairs + P * (55 + 45));
+        const uint64_t expected =
+            (uint64_t)(915 * (P * lg - edges) + 385 * edges + 20 * 2 * pairs + P * (55 + 45));
         assert_int_equal(operations(&r.stage_work[5]), expected);
     }
 }
@@ -113,7 +115,8 @@ static void eliminating_a_row_costs_915_385_and_212(void **state)
     static const int cases[][4] = {{5, 5, 5, 915}, {5, 5, 0, 385}, {5, 0, 5, 385}, {3, 3, 3, 212}};
     for (int k = 0; k < 4; k++) {
         struct work w = {0};
-        assert_true(block_row_eliminate(cases[k][0], cases[k][1], cases[k][2], 1, D, L, U, r, factor, y, a, b, &w));
+        assert_true(block_row_eliminate(cases[k][0], cases[k][1], cases[k][2], 1, D, L, U, r,
+                                        factor, y, a, b, &w));
         assert_int_equal(operations(&w), cases[k][3]);
     }
 }
@@ -121,7 +124,8 @@ static void eliminating_a_row_costs_915_385_and_212(void **state)
 static void estimates_equal_what_is_sent(void **state)
 {
     (void)state;
-    static const int sizes[][2] = {{1, 1}, {2, 2}, {7, 7}, {64, 64}, {100, 100}, {64, 16}, {61, 16}, {37, 5}};
+    static const int sizes[][2] = {{1, 1},     {2, 2},   {7, 7},   {64, 64},
+                                   {100, 100}, {64, 16}, {61, 16}, {37, 5}};
     for (int k = 0; k < 8; k++)
         for (int variant = 0; variant < 8; variant++) {
             struct run_spec spec = evaluation_spec("dynamics", sizes[k][0], sizes[k][1]);
@@ -133,12 +137,14 @@ static void estimates_equal_what_is_sent(void **state)
             struct program_estimate e;
             struct err err = {0};
             struct arena *a = arena_create();
-            kernel_find("dynamics")->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
+            kernel_find("dynamics")
+                ->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
             arena_destroy(a);
             assert_int_equal((int64_t)e.messages, r.messages);
             assert_int_equal((int64_t)e.bytes, r.bytes);
             struct work all = {0};
-            for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &r.stage_work[stage]);
+            for (int stage = 0; stage < MANY_RANKS_STAGES; stage++)
+                work_add(&all, &r.stage_work[stage]);
             const double done = (double)operations(&all);
             assert_true(e.flops > 0.9 * done && e.flops < 1.1 * done);
         }
@@ -162,16 +168,20 @@ static void estimates_know_what_is_left_out(void **state)
         struct err err = {0};
         const struct kernel_type *kernel = kernel_find(spec.kernel.name);
         const struct model *m = model_build(&spec.model, a, &err);
-        const struct job_omit omit = {.velocity = true, .load = true, .base = bits & 1, .bias = bits & 1};
+        const struct job_omit omit = {
+            .velocity = true, .load = true, .base = bits & 1, .bias = bits & 1};
         const struct evaluation whole = evaluate(&spec, a);
-        const struct evaluation lean = evaluate_omitting(&spec, m, state_make(m, &spec.model, a), omit, a);
+        const struct evaluation lean =
+            evaluate_omitting(&spec, m, state_make(m, &spec.model, a), omit, a);
         struct program_estimate e;
         kernel->estimate(&spec, m, &omit, &e);
         assert_int_equal((int64_t)e.messages, lean.counts.messages);
         assert_int_equal((int64_t)e.bytes, lean.counts.bytes);
-        assert_true(lean.counts.messages <= whole.counts.messages && lean.counts.bytes <= whole.counts.bytes);
+        assert_true(lean.counts.messages <= whole.counts.messages &&
+                    lean.counts.bytes <= whole.counts.bytes);
         struct work all = {0};
-        for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &lean.counts.stage_work[stage]);
+        for (int stage = 0; stage < MANY_RANKS_STAGES; stage++)
+            work_add(&all, &lean.counts.stage_work[stage]);
         const double done = (double)operations(&all);
         if (size[0] > 1 && !(e.flops > 0.9 * done && e.flops < 1.1 * done))
             fail_msg("variant %d: %g flops, not %g", variant, e.flops, done);
@@ -203,12 +213,14 @@ static void estimates_of_all_rows_and_of_trees(void **state)
             struct program_estimate e;
             struct err err = {0};
             struct arena *a = arena_create();
-            kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
+            kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err),
+                                             &(struct job_omit){0}, &e);
             arena_destroy(a);
             assert_int_equal((int64_t)e.messages, r.messages);
             assert_int_equal((int64_t)e.bytes, r.bytes);
             struct work all = {0};
-            for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &r.stage_work[stage]);
+            for (int stage = 0; stage < MANY_RANKS_STAGES; stage++)
+                work_add(&all, &r.stage_work[stage]);
             const double done = (double)operations(&all);
             if (!(e.flops > 0.95 * done && e.flops < 1.1 * done))
                 fail_msg("case %d P %d: %g, not %g", k, P, e.flops, done);

@@ -1,4 +1,5 @@
-/* test_exact.c - refinement with forces in twice the working precision, where working precision has none left. */
+/* test_exact.c - refinement with forces in twice the working precision, where working precision has
+ * none left. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +24,8 @@ static double error_of(const struct run_spec *spec)
     const struct evaluation v = evaluate_model(spec, m, s, a);
     double *qdd = TAKE(a, m->nu, double), error = 0, scale = 0;
     struct work w = {0};
-    assert_true(dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w));
+    assert_true(
+        dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w));
     for (int i = 0; i < m->nu; i++) {
         if (!(fabs(v.qdd[i] - qdd[i]) <= error)) error = fabs(v.qdd[i] - qdd[i]);
         scale = fmax(scale, fabs(qdd[i]));
@@ -59,7 +61,8 @@ static void every_solver_gets_all_digits(void **state)
                 if (P == 18) s.model.base = BASE_FLOATING, s.kernel.operators = OPERATORS_DENSE;
                 s.model.external_force = P == 3 ? 1 : 0;
                 const double error = error_of(&s);
-                if (!(error < 1e-12)) fail_msg("joint %d solver %d P %d: %.2e", joints[j], solver, P, error);
+                if (!(error < 1e-12))
+                    fail_msg("joint %d solver %d P %d: %.2e", joints[j], solver, P, error);
                 worst = fmax(worst, error);
                 s.kernel.residual = RESIDUAL_WORKING;
                 s.kernel.inner_refinements = 1;

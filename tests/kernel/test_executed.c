@@ -1,6 +1,7 @@
 /* test_executed.c - the parallel programs count what all their ranks together execute.
  *
- * The linker brings every run on many ranks through here (--wrap), between the start and the stop of the meter. */
+ * The linker brings every run on many ranks through here (--wrap), between the start and the stop
+ * of the meter. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,15 +16,21 @@
 
 static struct work executed;
 
-struct many_ranks_result __real_many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
-                                                      const struct comm_output *output, int noutput);
-struct many_ranks_result __wrap_many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
-                                                      const struct comm_output *output, int noutput);
-struct many_ranks_result __wrap_many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
+struct many_ranks_result __real_many_ranks_publishing(int nrank, many_ranks_program *program,
+                                                      void *context,
+                                                      const struct comm_output *output,
+                                                      int noutput);
+struct many_ranks_result __wrap_many_ranks_publishing(int nrank, many_ranks_program *program,
+                                                      void *context,
+                                                      const struct comm_output *output,
+                                                      int noutput);
+struct many_ranks_result __wrap_many_ranks_publishing(int nrank, many_ranks_program *program,
+                                                      void *context,
                                                       const struct comm_output *output, int noutput)
 {
     flop_meter_start();
-    const struct many_ranks_result r = __real_many_ranks_publishing(nrank, program, context, output, noutput);
+    const struct many_ranks_result r =
+        __real_many_ranks_publishing(nrank, program, context, output, noutput);
     executed = flop_meter_stop();
     return r;
 }
@@ -52,16 +59,18 @@ static bool near(uint64_t x, uint64_t y, double share)
 static int wrong(const struct run_spec *spec, const struct evaluation *v, double share)
 {
     struct work all = {0};
-    for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &v->counts.stage_work[stage]);
+    for (int stage = 0; stage < MANY_RANKS_STAGES; stage++)
+        work_add(&all, &v->counts.stage_work[stage]);
     if (share > 0 && near(all.flop + all.div, executed.flop + executed.div, share)) return 0;
-    if (all.flop == executed.flop && all.div == executed.div && all.sqrt == executed.sqrt && all.trig == executed.trig)
+    if (all.flop == executed.flop && all.div == executed.div && all.sqrt == executed.sqrt &&
+        all.trig == executed.trig)
         return 0;
-    print_error("%s, %d %s bodies on %d ranks, generator %d, formulation %d, solver %d, rate %g, steps %d, in %d: flop "
-                "%+ld of %lu, div %+ld, "
-                "sqrt %+ld, trig %+ld\n",
-                spec->kernel.name, spec->model.nbody, joint_name(spec->model.joint), spec->nrank, spec->model.generator,
-                spec->kernel.formulation, spec->kernel.solver, spec->model.rate, spec->kernel.steps,
-                spec->kernel.composites_incoming, difference(all.flop, executed.flop), (unsigned long)executed.flop,
+    print_error("%s, %d %s bodies on %d ranks, generator %d, formulation %d, solver %d, rate %g, "
+                "steps %d, in %d: flop %+ld of %lu, div %+ld, sqrt %+ld, trig %+ld\n",
+                spec->kernel.name, spec->model.nbody, joint_name(spec->model.joint), spec->nrank,
+                spec->model.generator, spec->kernel.formulation, spec->kernel.solver,
+                spec->model.rate, spec->kernel.steps, spec->kernel.composites_incoming,
+                difference(all.flop, executed.flop), (unsigned long)executed.flop,
                 difference(all.div, executed.div), difference(all.sqrt, executed.sqrt),
                 difference(all.trig, executed.trig));
     return 1;
@@ -96,8 +105,8 @@ static void inverse_dynamics_counts_what_it_executes(void **state)
     assert_int_equal(bad, 0);
 }
 
-/* Even without optimisation clang 14 leaves out c operations of each block row's update: there the meter tells nothing
- * of the source. */
+/* Even without optimisation clang 14 leaves out c operations of each block row's update: there the
+ * meter tells nothing of the source. */
 #ifdef __clang__
 #define NEEDS_GCC skip()
 #else
@@ -127,12 +136,13 @@ static void every_solver_counts_what_it_executes(void **state)
 {
     (void)state;
     NEEDS_GCC;
-    static const enum solver solver[] = {SOLVER_PCR_SYMMETRIC, SOLVER_CR, SOLVER_CR_PCR, SOLVER_THOMAS,
-                                         SOLVER_PARTITION};
+    static const enum solver solver[] = {SOLVER_PCR_SYMMETRIC, SOLVER_CR, SOLVER_CR_PCR,
+                                         SOLVER_THOMAS, SOLVER_PARTITION};
     int bad = 0;
     for (int k = 0; k < 5; k++)
         for (int n = 0; n < 12; n++) {
-            struct run_spec spec = evaluation_spec(n % 3 ? "forward" : "dynamics", 5 + n, n % 4 == 3 ? 5 + n : 5);
+            struct run_spec spec =
+                evaluation_spec(n % 3 ? "forward" : "dynamics", 5 + n, n % 4 == 3 ? 5 + n : 5);
             spec.kernel.precision = PRECISION_QUAD;
             spec.kernel.solver = solver[k];
             spec.kernel.hybrid_levels = 1;
@@ -140,18 +150,20 @@ static void every_solver_counts_what_it_executes(void **state)
                 spec.kernel.solver = SOLVER_PARTITION, spec.kernel.part_solver = PART_CR;
             if (n & 1) spec.kernel.formulation = FORMULATION_PAPER;
             if (n & 2) spec.kernel.inner_refinements = 1;
-            if (n & 4) spec.kernel.steps = 2, spec.kernel.step_size = 1e-3, spec.kernel.step = n % 3;
+            if (n & 4)
+                spec.kernel.steps = 2, spec.kernel.step_size = 1e-3, spec.kernel.step = n % 3;
             bad += run(&spec, 0);
         }
     assert_int_equal(bad, 0);
 }
 
-/* Forward dynamics of trees solves general 6 x 6 systems, which are charged by formula; a second one with the same
- * matrix is charged as a substitution, and its residual is a monitor. */
+/* Forward dynamics of trees solves general 6 x 6 systems, which are charged by formula; a second
+ * one with the same matrix is charged as a substitution, and its residual is a monitor. */
 static void trees_count_what_they_execute(void **state)
 {
     (void)state;
-    static const enum model_generator generator[] = {MODEL_COMB, MODEL_RANDOM_TREE, MODEL_DENDRIMER};
+    static const enum model_generator generator[] = {MODEL_COMB, MODEL_RANDOM_TREE,
+                                                     MODEL_DENDRIMER};
     int bad = 0;
     for (int k = 0; k < 3; k++)
         for (int n = 0; n < 6; n++) {

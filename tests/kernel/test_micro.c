@@ -59,7 +59,8 @@ static void collectives_are_as_announced(void **state)
                 s.kernel.repeat = 2;
                 s.kernel.message_bytes = bytes;
                 s.kernel.root = -1;
-                const struct collective_algorithm *row = collective_algorithms(micro_collective_shape(&s).kind, &n);
+                const struct collective_algorithm *row =
+                    collective_algorithms(micro_collective_shape(&s).kind, &n);
                 for (int i = -1; i < n; i++) {
                     struct err e = {0};
                     struct program_estimate wanted;
@@ -90,7 +91,8 @@ static const char *chosen(const char *kernel, int P, int64_t bytes, const char *
 static void the_machine_may_state_the_algorithms(void **state)
 {
     (void)state;
-    static const char rules[] = "[allreduce reduce-broadcast, allreduce ring from 1 KiB on 4 ranks; gather linear]";
+    static const char rules[] =
+        "[allreduce reduce-broadcast, allreduce ring from 1 KiB on 4 ranks; gather linear]";
     assert_string_equal(chosen("allreduce", 8, 8, ""), "recursive-doubling");
     assert_string_equal(chosen("allreduce", 8, 8, rules), "reduce-broadcast");
     assert_string_equal(chosen("allreduce", 8, 1024, rules), "ring");

@@ -1,4 +1,5 @@
-/* test_motion.c - time steps taken in parallel against the GNU Scientific Library's steppers, and their orders. */
+/* test_motion.c - time steps taken in parallel against the GNU Scientific Library's steppers, and
+ * their orders. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -65,7 +66,8 @@ static void every_rule_has_its_order(void **state)
             s.kernel.step_size /= 2;
             const double fine = distance(&s);
             if (!(coarse / fine > 0.7 * rules[k].ratio || fine < 1e-11))
-                fail_msg("rule %d joint %d: %.2e, then %.2e", rules[k].rule, joints[j], coarse, fine);
+                fail_msg("rule %d joint %d: %.2e, then %.2e", rules[k].rule, joints[j], coarse,
+                         fine);
         }
 }
 
@@ -117,7 +119,8 @@ static void the_number_of_ranks_does_not_matter(void **state)
 }
 
 /* stiff: springs whose explicit limit is far below the step; chains of every sort and trees. */
-static struct run_spec stiff(enum model_generator generator, enum model_joint joint, int n, int P, double stiffness)
+static struct run_spec stiff(enum model_generator generator, enum model_joint joint, int n, int P,
+                             double stiffness)
 {
     struct run_spec s = moving(generator, joint, n, P);
     s.model.stiffness = stiffness;
@@ -128,7 +131,8 @@ static struct run_spec stiff(enum model_generator generator, enum model_joint jo
     return s;
 }
 
-/* off_serial: largest difference of the end from the serial integrator's, relative to the largest rate. */
+/* off_serial: largest difference of the end from the serial integrator's, relative to the largest
+ * rate. */
 static double off_serial(const struct run_spec *spec)
 {
     struct arena *a = arena_create();
@@ -140,7 +144,8 @@ static double off_serial(const struct run_spec *spec)
         if (m->body[i].stiffness > 0) s->q[m->q_at[i]] += 0.1 * (i % 3 - 1);
     const struct evaluation v = evaluate_model(spec, m, s, a);
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
-    assert_true(t->advance(m, s, spec->kernel.step, spec->kernel.step_size / m->second, spec->kernel.steps, a, NULL));
+    assert_true(t->advance(m, s, spec->kernel.step, spec->kernel.step_size / m->second,
+                           spec->kernel.steps, a, NULL));
     double worst = 0, scale = 1;
     for (int i = 0; i < m->nu; i++) scale = fmax(scale, fabs(s->qd[i]));
     for (int i = 0; i < m->nq; i++) worst = fmax(worst, fabs(v.q_end[i] - s->q[i]));
@@ -158,7 +163,8 @@ static void implicit_springs_are_those_of_the_serial_integrator(void **state)
         for (int solver = 0; solver <= SOLVER_THOMAS; solver++)
             for (int P = 1; P <= 9; P += 4)
                 for (int k = 2; k <= 8; k += 3) {
-                    if (solver == SOLVER_PCR && k == 8) continue; /* nothing refines it: all digits may go */
+                    /* nothing refines it: all digits may go */
+                    if (solver == SOLVER_PCR && k == 8) continue;
                     struct run_spec s = stiff(MODEL_SERIAL_CHAIN, joints[j], 9, P, pow(10, k));
                     s.kernel.solver = solver;
                     s.kernel.inner_refinements = solver != SOLVER_PCR;
@@ -194,7 +200,8 @@ static void implicit_springs_of_trees_too(void **state)
     static const int generators[] = {MODEL_COMB, MODEL_STAR, MODEL_DENDRIMER, MODEL_RANDOM_TREE};
     for (int g = 0; g < 4; g++)
         for (int P = 1; P <= 13; P += 4) {
-            struct run_spec s = stiff(generators[g], P < 9 ? JOINT_REVOLUTE : JOINT_MIXED, 13, P, 1e6);
+            struct run_spec s =
+                stiff(generators[g], P < 9 ? JOINT_REVOLUTE : JOINT_MIXED, 13, P, 1e6);
             s.kernel.outer_refinements = P == 5;
             const double off = off_serial(&s);
             if (!(off < 1e-9)) fail_msg("tree %d P %d: %.2e", g, P, off);
@@ -222,7 +229,8 @@ static void implicit_steps_are_refused_where_they_do_not_exist(void **state)
     arena_destroy(a);
 }
 
-/* The worst of all evaluations is what a run hears of, also when it is no number, and small terms have no say. */
+/* The worst of all evaluations is what a run hears of, also when it is no number, and small terms
+ * have no say. */
 static void the_worst_evaluation_is_kept(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* test_planar.c - planar scenes in three components: tau and u' equal those of the serial algorithms in six. */
+/* test_planar.c - planar scenes in three components: tau and u' equal those of the serial
+ * algorithms in six. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,15 +28,17 @@ static struct run_spec planar_spec(const char *name, int n, int P)
 }
 
 /* check: both answers within the given relative errors. */
-static void check(const struct run_spec *spec, const struct planar_options *o, double tau, double qdd, struct worst *w)
+static void check(const struct run_spec *spec, const struct planar_options *o, double tau,
+                  double qdd, struct worst *w)
 {
     struct arena *a = arena_create();
     const struct model *m = planar_model(o, a);
     const struct evaluation v = evaluate_model(spec, m, planar_state(o, m, a), a);
     if (!(v.tau_error < tau && v.qdd_error < qdd))
-        fail_msg("n %d P %d seed %d joint %d solver %d formulation %d precision %d: tau %.1e qdd %.1e", o->n,
-                 spec->nrank, (int)o->seed, o->joint, spec->kernel.solver, spec->kernel.formulation,
-                 spec->kernel.precision, v.tau_error, v.qdd_error);
+        fail_msg(
+            "n %d P %d seed %d joint %d solver %d formulation %d precision %d: tau %.1e qdd %.1e",
+            o->n, spec->nrank, (int)o->seed, o->joint, spec->kernel.solver,
+            spec->kernel.formulation, spec->kernel.precision, v.tau_error, v.qdd_error);
     w->tau = fmax(w->tau, v.tau_error);
     w->qdd = fmax(w->qdd, v.qdd_error);
     arena_destroy(a);
@@ -49,13 +52,15 @@ static void tell(const char *what, const struct worst *w)
 static void chains_of_every_joint(void **state)
 {
     (void)state;
-    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR, JOINT_MIXED};
+    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR,
+                                              JOINT_MIXED};
     struct worst w = {0};
     for (int n = 1; n <= 13; n++)
         for (int P = 1; P <= n; P++)
             for (int k = 0; k < 4; k++) {
                 const struct planar_options o = {
-                    .n = n, .joint = joints[k], .springs = k & 1, .loads = n % 3 == 0, .seed = (uint64_t)(n + 17 * k)};
+                    .n = n, .joint = joints[k], .springs = k & 1, .loads = n % 3 == 0,
+                    .seed = (uint64_t)(n + 17 * k)};
                 struct run_spec s = planar_spec("dynamics", n, P);
                 s.kernel.formulation = FORMULATION_DIRECT;
                 check(&s, &o, 1e-12, 1e-10, &w);
@@ -91,7 +96,8 @@ static void every_solver_and_variant(void **state)
 static void trees_of_every_joint(void **state)
 {
     (void)state;
-    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR, JOINT_MIXED};
+    static const enum model_joint joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR,
+                                              JOINT_MIXED};
     struct worst w = {0};
     for (int n = 2; n <= 31; n += n < 8 ? 1 : 8)
         for (int P = 1; P <= n; P += P < 5 ? 1 : 6)
@@ -117,7 +123,8 @@ static void refinements_keep_the_answer(void **state)
         for (int formulation = 0; formulation < 2; formulation++)
             for (int P = 3; P <= 24; P += 7) {
                 const struct planar_options o = {
-                    .n = 24, .tree = tree, .joint = JOINT_MIXED, .loads = true, .seed = (uint64_t)(7 + P)};
+                    .n = 24, .tree = tree, .joint = JOINT_MIXED, .loads = true,
+                    .seed = (uint64_t)(7 + P)};
                 struct run_spec s = planar_spec("dynamics", 24, P);
                 s.kernel.formulation = formulation;
                 s.kernel.inner_refinements = 1;
@@ -135,7 +142,8 @@ static void float_and_quad_compute_the_same(void **state)
         for (int n = 1; n <= 16; n += 5)
             for (int P = 1; P <= n; P += 3) {
                 const struct planar_options o = {
-                    .n = n, .tree = tree, .joint = JOINT_MIXED, .loads = n > 1, .seed = (uint64_t)(3 * n)};
+                    .n = n, .tree = tree, .joint = JOINT_MIXED, .loads = n > 1,
+                    .seed = (uint64_t)(3 * n)};
                 struct run_spec s = planar_spec("dynamics", n, P);
                 s.kernel.precision = PRECISION_FLOAT;
                 check(&s, &o, 1e-4, 1e-2, &single);
@@ -155,7 +163,8 @@ static void time_steps_end_in_the_same_state(void **state)
         for (int tree = 0; tree < 2; tree++) {
             struct arena *a = arena_create();
             const struct planar_options o = {
-                .n = 9, .tree = tree, .joint = JOINT_MIXED, .springs = true, .seed = (uint64_t)(rule + 5)};
+                .n = 9, .tree = tree, .joint = JOINT_MIXED, .springs = true,
+                .seed = (uint64_t)(rule + 5)};
             const struct model *m = planar_model(&o, a);
             struct run_spec s = planar_spec("forward", 9, 4);
             s.kernel.steps = 10;
@@ -166,15 +175,17 @@ static void time_steps_end_in_the_same_state(void **state)
             s.kernel.algebra = ALGEBRA_SPATIAL;
             const struct evaluation u = evaluate_model(&s, m, planar_state(&o, m, a), a);
             for (int i = 0; i < m->nq; i++) largest = fmax(largest, fabs(v.q_end[i] - u.q_end[i]));
-            for (int i = 0; i < m->nu; i++) largest = fmax(largest, fabs(v.qd_end[i] - u.qd_end[i]));
+            for (int i = 0; i < m->nu; i++)
+                largest = fmax(largest, fabs(v.qd_end[i] - u.qd_end[i]));
             arena_destroy(a);
         }
     print_message("steps: largest difference %.1e\n", largest);
     assert_true(largest < 1e-10);
 }
 
-/* Loop forces, too, and the rank of the constraints, are those of the spatial programs; what they have out of the plane
- * is zero. Constraints that contradict each other have no answer to compare. */
+/* Loop forces, too, and the rank of the constraints, are those of the spatial programs; what they
+ * have out of the plane is zero. Constraints that contradict each other have no answer to
+ * compare. */
 static void closed_chains(void **state)
 {
     (void)state;
@@ -203,7 +214,8 @@ static void closed_chains(void **state)
         const int different = o.twins ? (loops + 1) / 2 : loops;
         if (v.loop_rank == 2 * different) {
             for (int k = 0; k < m->nrow; k++) scale = fmax(scale, fabs(u.lambda[k]));
-            for (int k = 0; k < m->nrow; k++) largest = fmax(largest, fabs(u.lambda[k] - v.lambda[k]) / scale);
+            for (int k = 0; k < m->nrow; k++)
+                largest = fmax(largest, fabs(u.lambda[k] - v.lambda[k]) / scale);
             w.qdd = fmax(w.qdd, v.qdd_error);
             compared++;
         }
@@ -240,12 +252,14 @@ static void estimates_equal_what_is_sent(void **state)
             if (sizes[k][0] == sizes[k][1] && variant & 4) s.kernel.solver = SOLVER_PCR_SYMMETRIC;
             const struct model *m = model_build(&s.model, a, &err);
             const struct evaluation v = evaluate_model(&s, m, state_make(m, &s.model, a), a);
-            kernel_find_planar("dynamics", PRECISION_DOUBLE)->estimate(&s, m, &(struct job_omit){0}, &e);
+            kernel_find_planar("dynamics", PRECISION_DOUBLE)
+                ->estimate(&s, m, &(struct job_omit){0}, &e);
             assert_int_equal((int64_t)e.messages, v.counts.messages);
             assert_int_equal((int64_t)e.bytes, v.counts.bytes);
             const double done = operations(&v.counts);
             if (!(e.flops > 0.9 * done && e.flops < (variant & 8 ? 1.15 : 1.1) * done))
-                fail_msg("n %d P %d variant %d: %g, not %g", sizes[k][0], sizes[k][1], variant, e.flops, done);
+                fail_msg("n %d P %d variant %d: %g, not %g", sizes[k][0], sizes[k][1], variant,
+                         e.flops, done);
             arena_destroy(a);
         }
 }
@@ -261,7 +275,8 @@ static void messages_are_as_small_as_the_plane(void **state)
         s.model.axes = AXES_PARALLEL;
         struct err err = {0};
         const struct model *m = model_build(&s.model, a, &err);
-        const struct many_ranks_result r = evaluate_model(&s, m, state_make(m, &s.model, a), a).counts;
+        const struct many_ranks_result r =
+            evaluate_model(&s, m, state_make(m, &s.model, a), a).counts;
         for (int stage = 1; stage <= 3; stage++) assert_int_equal(r.stage_messages[stage], phase);
         assert_int_equal(r.stage_bytes[1], 24 * phase + 32 * (P * lg - 2 * (P - 1)));
         assert_int_equal(r.stage_bytes[2], 24 * phase);

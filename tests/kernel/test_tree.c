@@ -1,4 +1,5 @@
-/* test_tree.c - parallel dynamics of trees and closed chains equals the serial algorithms; the plan is sound. */
+/* test_tree.c - parallel dynamics of trees and closed chains equals the serial algorithms; the plan
+ * is sound. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +12,8 @@
 #include "evaluation.h"
 #include "kernel/tree_plan.h"
 
-static const enum model_generator trees[] = {MODEL_COMB, MODEL_STAR, MODEL_RANDOM_TREE, MODEL_DENDRIMER};
+static const enum model_generator trees[] = {MODEL_COMB, MODEL_STAR, MODEL_RANDOM_TREE,
+                                             MODEL_DENDRIMER};
 
 /* check: both answers within the given relative errors. */
 static struct evaluation check(const struct run_spec *spec, double tau, double qdd)
@@ -19,8 +21,9 @@ static struct evaluation check(const struct run_spec *spec, double tau, double q
     struct arena *a = arena_create();
     struct evaluation v = evaluate(spec, a);
     if (!(v.tau_error < tau && v.qdd_error < qdd))
-        fail_msg("generator %d n %d P %d joint %d formulation %d: tau %.1e qdd %.1e", spec->model.generator,
-                 spec->model.nbody, spec->nrank, spec->model.joint, spec->kernel.formulation, v.tau_error, v.qdd_error);
+        fail_msg("generator %d n %d P %d joint %d formulation %d: tau %.1e qdd %.1e",
+                 spec->model.generator, spec->model.nbody, spec->nrank, spec->model.joint,
+                 spec->kernel.formulation, v.tau_error, v.qdd_error);
     arena_destroy(a);
     return v;
 }
@@ -108,8 +111,9 @@ static void a_four_bar_has_three_redundant_constraints(void **state)
 static void loops_of_all_kinds(void **state)
 {
     (void)state;
-    static const char *const files[] = {"closed_floatring_n0013", "closed_fourbar_rot",   "closed_platform_3x3R",
-                                        "closed_slidercrank",     "closed_two_4R_point3", "closed_two_6R_weld6"};
+    static const char *const files[] = {"closed_floatring_n0013", "closed_fourbar_rot",
+                                        "closed_platform_3x3R",   "closed_slidercrank",
+                                        "closed_two_4R_point3",   "closed_two_6R_weld6"};
     for (int k = 0; k < 6; k++)
         for (int P = 1; P <= 13; P += 3)
             for (int variant = 0; variant < 4; variant++) {
@@ -117,22 +121,28 @@ static void loops_of_all_kinds(void **state)
                 struct err e = {0};
                 struct run_spec s = evaluation_spec("dynamics", 1, P);
                 s.model.generator = MODEL_VECTOR;
-                snprintf(s.model.path, sizeof s.model.path, MIMDSIM_SRCDIR "/tests/data/vectors/%s.json", files[k]);
+                snprintf(s.model.path, sizeof s.model.path,
+                         MIMDSIM_SRCDIR "/tests/data/vectors/%s.json", files[k]);
                 s.kernel.formulation = variant & 1 ? FORMULATION_DIRECT : FORMULATION_PAPER;
                 s.kernel.inner_refinements = variant >> 1;
                 const struct model *m = model_build(&s.model, a, &e);
                 if (!m) fail_msg("%s", e.text);
                 if (P <= m->nbody) {
-                    const struct evaluation v = evaluate_model(&s, m, state_make(m, &s.model, a), a);
+                    const struct evaluation v =
+                        evaluate_model(&s, m, state_make(m, &s.model, a), a);
                     if (!(v.tau_error < 1e-13 && v.qdd_error < 1e-10))
-                        fail_msg("%s P %d: tau %.1e qdd %.1e", files[k], P, v.tau_error, v.qdd_error);
+                        fail_msg("%s P %d: tau %.1e qdd %.1e", files[k], P, v.tau_error,
+                                 v.qdd_error);
                 }
                 arena_destroy(a);
             }
 }
 
 /* depth: of a piece. */
-static int depth(const struct tree_plan *p, int k) { return p->parent[k] < 0 ? 0 : 1 + depth(p, p->parent[k]); }
+static int depth(const struct tree_plan *p, int k)
+{
+    return p->parent[k] < 0 ? 0 : 1 + depth(p, p->parent[k]);
+}
 
 static void pieces_are_connected_and_balanced(void **state)
 {
@@ -152,16 +162,19 @@ static void pieces_are_connected_and_balanced(void **state)
                 const int limit = (m->nbody + P - 1) / P;
                 const struct tree_plan *p = tree_plan_make(m, P, a);
                 assert_true(p->npiece >= 1 && p->npiece <= P);
-                for (int k = 0; k < P; k++) assert_true(p->bodies.at[k + 1] - p->bodies.at[k] <= 2 * limit);
+                for (int k = 0; k < P; k++)
+                    assert_true(p->bodies.at[k + 1] - p->bodies.at[k] <= 2 * limit);
                 for (int i = 0; i < m->nbody; i++) {
                     const int k = p->owner[i], parent = m->body[i].parent;
                     assert_true(k >= 0 && k < p->npiece);
                     assert_true(parent == p->anchor[k] || (parent >= 0 && p->owner[parent] == k));
                 }
                 int deepest = 0;
-                for (int k = 0; k < p->npiece; k++) deepest = depth(p, k) > deepest ? depth(p, k) : deepest;
-                assert_true(deepest == 0 ? p->nlevel == 0
-                                         : 1 << (p->nlevel - 1) <= deepest && deepest < 1 << p->nlevel);
+                for (int k = 0; k < p->npiece; k++)
+                    deepest = depth(p, k) > deepest ? depth(p, k) : deepest;
+                assert_true(deepest == 0
+                                ? p->nlevel == 0
+                                : 1 << (p->nlevel - 1) <= deepest && deepest < 1 << p->nlevel);
                 assert_int_equal(p->nop + p->nroot <= m->nbody, 1);
                 arena_destroy(a);
             }
@@ -170,17 +183,20 @@ static void pieces_are_connected_and_balanced(void **state)
 static void contraction_takes_logarithmically_many_rounds(void **state)
 {
     (void)state;
-    static const int known[3][2] = {{64, 6}, {256, 8}, {1024, 10}}; /* a chain with one body per rank */
+    /* a chain with one body per rank */
+    static const int known[3][2] = {{64, 6}, {256, 8}, {1024, 10}};
     for (int k = 0; k < 3; k++) {
         struct arena *a = arena_create();
         struct err e = {0};
         struct run_spec s = evaluation_spec("forward", known[k][0], known[k][0]);
-        assert_int_equal(tree_plan_make(model_build(&s.model, a, &e), known[k][0], a)->nround, known[k][1]);
+        assert_int_equal(tree_plan_make(model_build(&s.model, a, &e), known[k][0], a)->nround,
+                         known[k][1]);
         arena_destroy(a);
     }
 }
 
-/* count: what a run sends and computes equals the estimate; for loops the flops but for the least norm solution. */
+/* count: what a run sends and computes equals the estimate; for loops the flops but for the least
+ * norm solution. */
 static void count(const struct run_spec *spec, struct job_omit omit)
 {
     struct arena *a = arena_create();
@@ -191,15 +207,16 @@ static void count(const struct run_spec *spec, struct job_omit omit)
     struct program_estimate e;
     kernel_find(spec->kernel.name)->estimate(spec, m, &omit, &e);
     double flops = 0;
-    for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) flops += (double)v.counts.stage_work[stage].flop;
+    for (int stage = 0; stage < MANY_RANKS_STAGES; stage++)
+        flops += (double)v.counts.stage_work[stage].flop;
     const double least = m->nloop > 0 ? 0.96 * flops : flops;
     if (!(e.flops >= least && e.flops <= flops) || e.messages != (double)v.counts.messages ||
         e.bytes != (double)v.counts.bytes)
-        fail_msg("%s, generator %d n %d P %d joint %d formulation %d steps %d: %.0f flops, %.0f messages, %.0f bytes; "
-                 "counted %.0f, %ld, %ld",
-                 spec->kernel.name, spec->model.generator, spec->model.nbody, spec->nrank, spec->model.joint,
-                 spec->kernel.formulation, spec->kernel.steps, e.flops, e.messages, e.bytes, flops,
-                 (long)v.counts.messages, (long)v.counts.bytes);
+        fail_msg("%s, generator %d n %d P %d joint %d formulation %d steps %d: %.0f flops, %.0f "
+                 "messages, %.0f bytes; counted %.0f, %ld, %ld",
+                 spec->kernel.name, spec->model.generator, spec->model.nbody, spec->nrank,
+                 spec->model.joint, spec->kernel.formulation, spec->kernel.steps, e.flops,
+                 e.messages, e.bytes, flops, (long)v.counts.messages, (long)v.counts.bytes);
     arena_destroy(a);
 }
 
@@ -215,15 +232,18 @@ static void estimates_are_what_is_counted(void **state)
         const bool ring = s.model.generator == MODEL_RING;
         /* nothing to close, and joints that rings cannot have */
         if (ring && s.model.joint == JOINT_FIXED) continue;
-        if (k % 4 > 1) s.model.base = BASE_FLOATING; /* of a ring both sides of the loop have owners then */
+        /* of a ring both sides of the loop have owners then */
+        if (k % 4 > 1) s.model.base = BASE_FLOATING;
         s.model.external_force = k % 4 == 0;
-        s.kernel.outer_refinements = k % 5 == 0 && s.kernel.formulation == FORMULATION_PAPER && !ring;
+        s.kernel.outer_refinements =
+            k % 5 == 0 && s.kernel.formulation == FORMULATION_PAPER && !ring;
         s.kernel.steps = k % 7 == 0 && k % 3 > 0 ? 2 : 0;
         s.kernel.step = k % 14 == 0 ? STEP_RK4 : STEP_SEMI_IMPLICIT;
         s.kernel.step_size = 1e-4;
         const bool rest = k % 3 == 1 && k % 13 == 0 && s.kernel.steps == 0;
         if (rest) s.model.rate = 0;
-        count(&s, (struct job_omit){.velocity = rest, .load = rest && s.model.external_force == 0, .turn = true});
+        count(&s, (struct job_omit){
+                      .velocity = rest, .load = rest && s.model.external_force == 0, .turn = true});
     }
 }
 

@@ -1,4 +1,5 @@
-/* test_angle.c - our sine and cosine against the C library's in long double, and the batch against the single. */
+/* test_angle.c - our sine and cosine against the C library's in long double, and the batch against
+ * the single. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,8 +33,10 @@ static void errors_stay_under_one_ulp(void **state)
     for (int i = 0; i < N; i++) {
         double x = angle_of(&r, i), s, c;
         angle_sincos(x, &s, &c);
-        assert_true(fabsl((long double)s - sinl((long double)x)) <= 0x1.0p-52L * fabsl(sinl((long double)x)));
-        assert_true(fabsl((long double)c - cosl((long double)x)) <= 0x1.0p-52L * fabsl(cosl((long double)x)));
+        assert_true(fabsl((long double)s - sinl((long double)x)) <=
+                    0x1.0p-52L * fabsl(sinl((long double)x)));
+        assert_true(fabsl((long double)c - cosl((long double)x)) <=
+                    0x1.0p-52L * fabsl(cosl((long double)x)));
     }
 }
 
@@ -69,7 +72,8 @@ static void batch_equals_single_bit_by_bit(void **state)
     }
 }
 
-/* Whole vectors, overlapping last ones, and too few for one; nothing is written beside the batch. */
+/* Whole vectors, overlapping last ones, and too few for one; nothing is written beside the
+ * batch. */
 static void batches_of_all_lengths_are_the_same_bits(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* test_block_tridiag.c - block elimination against dense elimination of the same system, all orders of blocks. */
+/* test_block_tridiag.c - block elimination against dense elimination of the same system, all orders
+ * of blocks. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,19 +37,22 @@ static void make(struct made *s, struct random *g, struct arena *a)
             for (int c = 0; c <= r; c++) {
                 const double v = random_uniform(g, -1, 1) + (r == c ? 8 : 0);
                 s->t.D[i * BLOCK_PACKED + packed_index(r, c)] = v;
-                s->dense[(s->at[i] + r) * n + s->at[i] + c] = s->dense[(s->at[i] + c) * n + s->at[i] + r] = v;
+                s->dense[(s->at[i] + r) * n + s->at[i] + c] =
+                    s->dense[(s->at[i] + c) * n + s->at[i] + r] = v;
             }
             for (int c = 0; c < before; c++) {
                 const double v = random_uniform(g, -0.5, 0.5);
                 s->t.L[i * BLOCK_FULL + r * before + c] = v;
-                s->dense[(s->at[i] + r) * n + s->at[i - 1] + c] = s->dense[(s->at[i - 1] + c) * n + s->at[i] + r] = v;
+                s->dense[(s->at[i] + r) * n + s->at[i - 1] + c] =
+                    s->dense[(s->at[i - 1] + c) * n + s->at[i] + r] = v;
             }
         }
     }
     for (int i = 0; i < n * RHS; i++) s->x[i] = random_uniform(g, -1, 1);
     for (int i = 0; i < n; i++)
         for (int l = 0; l < RHS; l++)
-            for (int k = 0; k < n; k++) s->r[i * RHS + l] += s->dense[i * n + k] * s->x[k * RHS + l];
+            for (int k = 0; k < n; k++)
+                s->r[i * RHS + l] += s->dense[i * n + k] * s->x[k * RHS + l];
 }
 
 static void thomas_solves_all_orders_of_blocks(void **state)
@@ -62,7 +66,8 @@ static void thomas_solves_all_orders_of_blocks(void **state)
         double z[ROWS * 6 * RHS] = {0};
         make(&s, &g, a);
         for (int i = 0; i < ROWS; i++)
-            memcpy(z + i * 6 * RHS, s.r + s.at[i] * RHS, (size_t)(s.size[i] * RHS) * sizeof(double));
+            memcpy(z + i * 6 * RHS, s.r + s.at[i] * RHS,
+                   (size_t)(s.size[i] * RHS) * sizeof(double));
         assert_int_equal(block_tridiag_factor(&s.t, &w), -1);
         block_tridiag_solve(&s.t, RHS, z, &w);
         for (int i = 0; i < ROWS; i++)
@@ -74,8 +79,8 @@ static void thomas_solves_all_orders_of_blocks(void **state)
 
 enum { BEAM = 60 };
 
-/* Solve S K S x = r for x, K = the second difference (condition about BEAM^2), S = diag(scale); the largest error of
- * S x against `z`. `jacobi`: scale the system to a diagonal of ones first. */
+/* Solve S K S x = r for x, K = the second difference (condition about BEAM^2), S = diag(scale); the
+ * largest error of S x against `z`. `jacobi`: scale the system to a diagonal of ones first. */
 static double beam_error(const double *scale, const double *z, bool jacobi, struct arena *a)
 {
     static const unsigned char size[BEAM] = {[0 ... BEAM - 1] = 1};
@@ -100,7 +105,8 @@ static double beam_error(const double *scale, const double *z, bool jacobi, stru
     return error / largest;
 }
 
-/* Scaling a system whose unknowns differ by sixteen decades neither helps nor harms: elimination is invariant to it. */
+/* Scaling a system whose unknowns differ by sixteen decades neither helps nor harms: elimination is
+ * invariant to it. */
 static void scaling_by_the_diagonal_changes_no_error(void **state)
 {
     (void)state;
@@ -109,7 +115,8 @@ static void scaling_by_the_diagonal_changes_no_error(void **state)
     for (int round = 0; round < 40; round++) {
         struct arena *a = arena_create();
         double scale[BEAM], z[BEAM];
-        for (int i = 0; i < BEAM; i++) scale[i] = pow(10, random_uniform(&g, -8, 8)), z[i] = random_uniform(&g, -1, 1);
+        for (int i = 0; i < BEAM; i++)
+            scale[i] = pow(10, random_uniform(&g, -8, 8)), z[i] = random_uniform(&g, -1, 1);
         plain += log(beam_error(scale, z, false, a));
         scaled += log(beam_error(scale, z, true, a));
         arena_destroy(a);
@@ -156,7 +163,8 @@ static void the_first_bad_row_is_named(void **state)
 
 enum { M = 2 };
 
-/* One row with its neighbours' couplings, what eliminating it gave, and D^-1 [L U r] by dense elimination. */
+/* One row with its neighbours' couplings, what eliminating it gave, and D^-1 [L U r] by dense
+ * elimination. */
 struct eliminated {
     int c, nl, nu, width;
     double D[21], L[36], U[36], r[12], factor[100], y[12], to_a[80], to_b[80];
@@ -171,11 +179,13 @@ static void eliminate_random(struct eliminated *e, int c, int nl, int nu, struct
     *e = (struct eliminated){.c = c, .nl = nl, .nu = nu, .width = nl + nu + M};
     for (int i = 0; i < c; i++)
         for (int j = 0; j <= i; j++)
-            full[i * c + j] = full[j * c + i] = e->D[packed_index(i, j)] = random_uniform(g, -1, 1) + (i == j ? 7 : 0);
+            full[i * c + j] = full[j * c + i] = e->D[packed_index(i, j)] =
+                random_uniform(g, -1, 1) + (i == j ? 7 : 0);
     for (int i = 0; i < c * nl; i++) e->L[i] = random_uniform(g, -1, 1);
     for (int i = 0; i < c * nu; i++) e->U[i] = random_uniform(g, -1, 1);
     for (int i = 0; i < c * M; i++) e->r[i] = random_uniform(g, -1, 1);
-    assert_true(block_row_eliminate(c, nl, nu, M, e->D, e->L, e->U, e->r, e->factor, e->y, e->to_a, e->to_b, &w));
+    assert_true(block_row_eliminate(c, nl, nu, M, e->D, e->L, e->U, e->r, e->factor, e->y, e->to_a,
+                                    e->to_b, &w));
     for (int i = 0; i < c; i++)
         for (int j = 0; j < e->width; j++)
             e->inverse_times[i * e->width + j] = j < nl        ? e->L[i * nl + j]
@@ -185,16 +195,18 @@ static void eliminate_random(struct eliminated *e, int c, int nl, int nu, struct
     for (int i = 0; i < nl + nu; i++)
         for (int j = 0; j < e->width; j++)
             for (int k = 0; k < c; k++)
-                e->schur[i * e->width + j] +=
-                    (i < nl ? e->L[k * nl + i] : e->U[k * nu + i - nl]) * e->inverse_times[k * e->width + j];
+                e->schur[i * e->width + j] += (i < nl ? e->L[k * nl + i] : e->U[k * nu + i - nl]) *
+                                              e->inverse_times[k * e->width + j];
 }
 
-/* check_side: S and v of the n neighbour's unknowns that begin at row `first` of the Schur complement. */
+/* check_side: S and v of the n neighbour's unknowns that begin at row `first` of the Schur
+ * complement. */
 static void check_side(const struct eliminated *e, int n, int first, const double *update)
 {
     for (int i = 0; i < n; i++) {
         const double *row = e->schur + (first + i) * e->width;
-        for (int j = 0; j <= i; j++) assert_true(fabs(update[packed_index(i, j)] - row[first + j]) < 1e-13);
+        for (int j = 0; j <= i; j++)
+            assert_true(fabs(update[packed_index(i, j)] - row[first + j]) < 1e-13);
         for (int j = 0; j < M; j++)
             assert_true(fabs(update[packed_size(n) + i * M + j] - row[e->nl + e->nu + j]) < 1e-13);
     }
@@ -232,12 +244,15 @@ static void a_stored_factor_serves_further_right_hand_sides(void **state)
         for (int i = 0; i < e.nu * M; i++) assert_true(v_b[i] == e.to_b[packed_size(e.nu) + i]);
         for (int i = 0; i < e.nl * M; i++) x_a[i] = random_uniform(&g, -1, 1);
         for (int i = 0; i < e.nu * M; i++) x_b[i] = random_uniform(&g, -1, 1);
-        block_row_resubstitute(e.c, e.nl, e.nu, M, e.factor, again, x_a, x_b, &w); /* D^-1 (r - L x_a - U x_b) */
+        /* D^-1 (r - L x_a - U x_b) */
+        block_row_resubstitute(e.c, e.nl, e.nu, M, e.factor, again, x_a, x_b, &w);
         for (int i = 0; i < e.c; i++)
             for (int l = 0; l < M; l++) {
                 double x = e.inverse_times[i * e.width + e.nl + e.nu + l];
-                for (int j = 0; j < e.nl; j++) x -= e.inverse_times[i * e.width + j] * x_a[j * M + l];
-                for (int j = 0; j < e.nu; j++) x -= e.inverse_times[i * e.width + e.nl + j] * x_b[j * M + l];
+                for (int j = 0; j < e.nl; j++)
+                    x -= e.inverse_times[i * e.width + j] * x_a[j * M + l];
+                for (int j = 0; j < e.nu; j++)
+                    x -= e.inverse_times[i * e.width + e.nl + j] * x_b[j * M + l];
                 assert_true(fabs(again[i * M + l] - x) < 1e-12);
             }
     }

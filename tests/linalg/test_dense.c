@@ -1,4 +1,5 @@
-/* test_dense.c - small dense operators against plain definitions, on random matrices of all sizes. */
+/* test_dense.c - small dense operators against plain definitions, on random matrices of all
+ * sizes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* test_least_norm.c - eigenvalues of known matrices; least-norm solutions, their rank and their scaling. */
+/* test_least_norm.c - eigenvalues of known matrices; least-norm solutions, their rank and their
+ * scaling. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -56,7 +57,8 @@ static void the_shortest_solution_is_found(void **state)
     struct random rnd = random_make(4, 0, 0);
     for (int rank = 0; rank <= 5; rank++) {
         enum { N = 5 };
-        double b[N * N] = {0}, s[N * N], copy[N * N], x[N], r[N], y[N], room[N * N + 2 * N], reference[N];
+        double b[N * N] = {0}, s[N * N], copy[N * N], x[N], r[N], y[N], room[N * N + 2 * N],
+                     reference[N];
         struct work w = {0};
         for (int i = 0; i < N; i++) {
             for (int k = 0; k < rank; k++) b[i * N + k] = random_uniform(&rnd, -1, 1);

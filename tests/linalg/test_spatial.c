@@ -51,7 +51,8 @@ static void dense_mul(const double *a, const double *b, bool transposed, double 
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 6; j++) {
             c[6 * i + j] = 0;
-            for (int k = 0; k < 6; k++) c[6 * i + j] += a[6 * i + k] * (transposed ? b[6 * j + k] : b[6 * k + j]);
+            for (int k = 0; k < 6; k++)
+                c[6 * i + j] += a[6 * i + k] * (transposed ? b[6 * j + k] : b[6 * k + j]);
         }
 }
 
@@ -122,7 +123,8 @@ static void rigid_inertias_are_symmetric_matrices(void **state)
         for (int i = 0; i < 6; i++) assert_near(t.a[i], u.a[i], 1e-13);
         for (int i = 0; i < 9; i++) assert_near(t.b[i], u.b[i], 1e-13);
         for (int i = 0; i < 6; i++) assert_near(t.c[i], u.c[i], 1e-13);
-        sum = in, inertia_add(&sum, &moved), sym6_add(&s, &t), inertia_mul(f, &sum, v), sym6_mul(g, &s, v);
+        sum = in, inertia_add(&sum, &moved), sym6_add(&s, &t), inertia_mul(f, &sum, v),
+        sym6_mul(g, &s, v);
         for (int i = 0; i < 6; i++) assert_near(f[i], g[i], 1e-13);
         /* I V' + P of a steadily turning body: P = [w x J w; w x (w x ms)] */
         double c[3];

@@ -107,8 +107,7 @@ static void what_is_refused_is_told_by_name_and_line(void **state)
         {"system", "be_bad (refused.c:19): calls system()"},
         {"popen", "be_bad (refused.c:20): calls popen()"},
         {"thread", "be_bad (refused.c:21): calls pthread_create(), which a program on the "
-                   "simulator cannot use: a virtual "
-                   "processor has one thread"},
+                   "simulator cannot use: a virtual processor has one thread"},
         {"socket", "be_bad (refused.c:22): calls socket()"},
         {"stdin", "reads standard input, which a program on the simulator does not have"},
         {"scanf", "be_bad (refused.c:24): reads standard input"},

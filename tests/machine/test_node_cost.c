@@ -41,13 +41,17 @@ static void a_node_without_rates_computes_in_no_time(void **state)
 static void code_takes_the_longest_of_arithmetic_instructions_and_memory(void **state)
 {
     (void)state;
-    struct node_spec s = {.flop_rate = 50e6, .clock = 100e6, .div_cycles = 4, .copy_bandwidth = 250e6};
+    struct node_spec s = {
+        .flop_rate = 50e6, .clock = 100e6, .div_cycles = 4, .copy_bandwidth = 250e6};
     struct node_cost c = node_cost_make(&s); /* 20 ns a flop, 40 ns a division, 4 ns a byte */
-    assert_float_equal(c.instruction, 8000, 1e-3); /* 2.5 in the time of a flop: less than the cycle of 10 ns */
+    /* 2.5 in the time of a flop: less than the cycle of 10 ns */
+    assert_float_equal(c.instruction, 8000, 1e-3);
     assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2}, 5), 40000, 1e-3);
     assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2}, 6), 48000, 1e-3);
-    assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2, .div = 1, .bytes = 24}, 6), 80000, 1e-3);
-    assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2, .bytes = 24}, 5), 48000, 1e-3);
+    assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2, .div = 1, .bytes = 24}, 6),
+                       80000, 1e-3);
+    assert_float_equal(node_cost_code_ps(&c, &(struct work){.flop = 2, .bytes = 24}, 5), 48000,
+                       1e-3);
     assert_float_equal(node_cost_code_ps(&c, &(struct work){.call = 9}, 5), 40000, 1e-3);
     s.clock = 200e6;
     assert_float_equal(node_cost_make(&s).instruction, 5000, 1e-3); /* a cycle */

@@ -1,4 +1,5 @@
-/* test_placement.c - orders of processors, and the link loads and hops they give doubling patterns, by enumeration. */
+/* test_placement.c - orders of processors, and the link loads and hops they give doubling patterns,
+ * by enumeration. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,11 +13,12 @@
 
 enum { MAX_ROUTE = 64 };
 
-static struct machine_spec machine(enum topology_family family, int ndim, const int *dims, enum placement_kind kind)
+static struct machine_spec machine(enum topology_family family, int ndim, const int *dims,
+                                   enum placement_kind kind)
 {
     struct machine_spec m = {.name = "test"};
-    m.topology =
-        (struct topology_spec){.family = family, .ndim = ndim, .nodes_per_router = 1, .processors_per_node = 1};
+    m.topology = (struct topology_spec){
+        .family = family, .ndim = ndim, .nodes_per_router = 1, .processors_per_node = 1};
     for (int d = 0; d < ndim; d++) m.topology.dims[d] = dims[d];
     m.placement.kind = kind;
     return m;
@@ -50,14 +52,15 @@ static void every_order_uses_each_processor_once(void **state)
 {
     (void)state;
     static const int grid[] = {5, 4, 3}, cube[] = {5};
-    static const enum placement_kind kinds[] = {PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM};
+    static const enum placement_kind kinds[] = {PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY,
+                                                PLACEMENT_RANDOM};
     for (size_t k = 0; k < 4; k++)
         for (int spread = 0; spread < 2; spread++)
             for (int per_node = 1; per_node <= 3; per_node++) {
                 struct arena *a = arena_create();
                 bool gray = kinds[k] == PLACEMENT_GRAY;
-                struct machine_spec m =
-                    gray ? machine(TOPOLOGY_HYPERCUBE, 1, cube, kinds[k]) : machine(TOPOLOGY_MESH, 3, grid, kinds[k]);
+                struct machine_spec m = gray ? machine(TOPOLOGY_HYPERCUBE, 1, cube, kinds[k])
+                                             : machine(TOPOLOGY_MESH, 3, grid, kinds[k]);
                 m.topology.processors_per_node = per_node;
                 m.topology.nodes_per_router = 2;
                 m.placement.spread = spread ? SPREAD_CYCLIC : SPREAD_BLOCK;
@@ -80,7 +83,8 @@ static void snake_and_gray_step_to_neighbours(void **state)
         err_clear(&e);
         struct topology *t = topology_create(&m[i].topology, a, &e);
         struct placement p = place(&m[i], t->nnode, a);
-        for (int r = 1; r < p.nrank; r++) assert_int_equal(topology_distance(t, p.node[r - 1], p.node[r]), 1);
+        for (int r = 1; r < p.nrank; r++)
+            assert_int_equal(topology_distance(t, p.node[r - 1], p.node[r]), 1);
     }
     arena_destroy(a);
 }
@@ -96,7 +100,8 @@ static void block_fills_nodes_and_cyclic_deals_to_them(void **state)
     m.placement.spread = SPREAD_CYCLIC;
     struct placement cyclic = place(&m, 6, a);
     static const int block_node[] = {0, 0, 1, 1, 2, 2}, cyclic_node[] = {0, 1, 2, 3, 0, 1};
-    static const int block_processor[] = {0, 1, 0, 1, 0, 1}, cyclic_processor[] = {0, 0, 0, 0, 1, 1};
+    static const int block_processor[] = {0, 1, 0, 1, 0, 1},
+                     cyclic_processor[] = {0, 0, 0, 0, 1, 1};
     assert_memory_equal(block.node, block_node, sizeof block_node);
     assert_memory_equal(cyclic.node, cyclic_node, sizeof cyclic_node);
     assert_memory_equal(block.processor, block_processor, sizeof block_processor);
@@ -140,7 +145,8 @@ static void lists_are_obeyed_or_refused(void **state)
     for (int i = 0; i < 3; i++) {
         err_clear(&e);
         m.placement.list = bad[i];
-        assert_false(placement_create(&p, &m, t, i == 2 ? 4 : 3, a, &e)); /* the last list is too short */
+        /* the last list is too short */
+        assert_false(placement_create(&p, &m, t, i == 2 ? 4 : 3, a, &e));
         assert_int_equal(e.kind, ERR_CONFIG);
     }
     arena_destroy(a);
@@ -167,15 +173,16 @@ static void what_does_not_fit_is_refused(void **state)
 
 /* ---- hops and link loads of one step ---- */
 
-enum pattern { ONE_WAY, BOTH_WAYS, REDUCTION }; /* Kogge-Stone; PCR; cyclic reduction's elimination */
+/* Kogge-Stone; PCR; cyclic reduction's elimination */
+enum pattern { ONE_WAY, BOTH_WAYS, REDUCTION };
 
 struct load {
     double mean_hops;
     int worst;
 };
 
-static void add_message(const struct topology *t, const struct placement *p, int from, int to, int *load, int *hops,
-                        int *messages)
+static void add_message(const struct topology *t, const struct placement *p, int from, int to,
+                        int *load, int *hops, int *messages)
 {
     struct hop route[MAX_ROUTE];
     if (from < 0 || to < 0 || from >= p->nrank || to >= p->nrank) return;
@@ -207,11 +214,13 @@ static struct load step_load(const struct machine_spec *m, int distance, enum pa
     return out;
 }
 
-static void expect(const struct machine_spec *m, enum pattern pattern, const double *mean_hops, const int *worst)
+static void expect(const struct machine_spec *m, enum pattern pattern, const double *mean_hops,
+                   const int *worst)
 {
     for (int j = 0; j < 7; j++) {
         struct load l = step_load(m, 1 << j, pattern);
-        if (mean_hops && !(l.mean_hops > mean_hops[j] - 0.051 && l.mean_hops < mean_hops[j] + 0.051))
+        if (mean_hops &&
+            !(l.mean_hops > mean_hops[j] - 0.051 && l.mean_hops < mean_hops[j] + 0.051))
             fail_msg("step %d: %g hops, expected %g", j, l.mean_hops, mean_hops[j]);
         if (l.worst != worst[j]) fail_msg("step %d: load %d, expected %d", j, l.worst, worst[j]);
     }
@@ -232,16 +241,22 @@ static void loads_of_doubling_steps_are_those_of_theory(void **state)
     expect(&torus, ONE_WAY, h844, (const int[]){1, 2, 4, 1, 2, 1, 2});
     expect(&torus, BOTH_WAYS, h844, (const int[]){1, 2, 8, 1, 4, 1, 2});
     expect(&torus, REDUCTION, NULL, (const int[]){1, 1, 2, 1, 2, 1, 1});
-    expect(&snake, BOTH_WAYS, (const double[]){1.0, 2.0, 3.5, 3.0, 2.0, 2.0, 2.0}, (const int[]){1, 2, 6, 4, 3, 2, 2});
-    expect(&plane, BOTH_WAYS, (const double[]){1.1, 2.2, 4.5, 1.0, 2.0, 4.0, 8.0}, (const int[]){1, 2, 8, 1, 2, 4, 8});
-    expect(&mesh, BOTH_WAYS, (const double[]){1.8, 3.2, 4.5, 1.0, 2.0, 4.0, 8.0}, (const int[]){2, 4, 8, 1, 2, 4, 8});
-    expect(&ring, BOTH_WAYS, (const double[]){1, 2, 4, 8, 16, 32, 64}, (const int[]){1, 2, 4, 8, 16, 32, 64});
+    expect(&snake, BOTH_WAYS, (const double[]){1.0, 2.0, 3.5, 3.0, 2.0, 2.0, 2.0},
+           (const int[]){1, 2, 6, 4, 3, 2, 2});
+    expect(&plane, BOTH_WAYS, (const double[]){1.1, 2.2, 4.5, 1.0, 2.0, 4.0, 8.0},
+           (const int[]){1, 2, 8, 1, 2, 4, 8});
+    expect(&mesh, BOTH_WAYS, (const double[]){1.8, 3.2, 4.5, 1.0, 2.0, 4.0, 8.0},
+           (const int[]){2, 4, 8, 1, 2, 4, 8});
+    expect(&ring, BOTH_WAYS, (const double[]){1, 2, 4, 8, 16, 32, 64},
+           (const int[]){1, 2, 4, 8, 16, 32, 64});
     expect(&ring, ONE_WAY, NULL, (const int[]){1, 2, 4, 8, 16, 32, 64});
     expect(&ring, REDUCTION, NULL, (const int[]){1, 1, 1, 1, 1, 1, 1});
-    expect(&cube, BOTH_WAYS, (const double[]){1.9, 1.9, 1.8, 1.7, 1.6, 1.3, 1.0}, (const int[]){2, 2, 2, 2, 2, 2, 1});
+    expect(&cube, BOTH_WAYS, (const double[]){1.9, 1.9, 1.8, 1.7, 1.6, 1.3, 1.0},
+           (const int[]){2, 2, 2, 2, 2, 2, 1});
     expect(&cube, ONE_WAY, NULL, (const int[]){1, 1, 1, 1, 1, 1, 1});
     /* with one hop each, neighbours cannot share a link: load 1 in the first step */
-    expect(&gray, BOTH_WAYS, (const double[]){1, 2, 2, 2, 2, 2, 2}, (const int[]){1, 2, 2, 2, 2, 2, 1});
+    expect(&gray, BOTH_WAYS, (const double[]){1, 2, 2, 2, 2, 2, 2},
+           (const int[]){1, 2, 2, 2, 2, 2, 1});
 }
 
 static void hops_on_a_hypercube_are_those_of_the_closed_form(void **state)

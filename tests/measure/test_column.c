@@ -49,18 +49,22 @@ static void list(const struct column *c, const void *row, struct json *j)
 #define MADE(member) .offset = offsetof(struct made, member)
 
 static const struct column made_column[] = {
-    {"real_s", COLUMN_REAL, MADE(real), .flags = COLUMN_NULL, .doc = "a time", .title = "real ms", .width = 9,
+    {"real_s", COLUMN_REAL, MADE(real), .flags = COLUMN_NULL, .doc = "a time", .title = "real ms",
+     .width = 9,
      .style = 'f', .digits = 2, .scale = 1e3},
-    {"count", COLUMN_INT, MADE(count), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE, .doc = "a count",
+    {"count", COLUMN_INT, MADE(count), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE,
+     .doc = "a count",
      .title = "n", .width = 4},
-    {"fruit", COLUMN_WORD, MADE(fruit), WORDS(fruit_word), .doc = "a word", .title = "fruit", .before = "  ",
+    {"fruit", COLUMN_WORD, MADE(fruit), WORDS(fruit_word), .doc = "a word", .title = "fruit",
+     .before = "  ",
      .width = -7},
     {"ripe", COLUMN_BOOL, MADE(ripe), .doc = "a truth"},
     {"name", COLUMN_CHARS, MADE(name), .doc = "a text", .key = "called", .title = "name"},
     {"note", COLUMN_STRING, MADE(note), .known = is_pear, .flags = COLUMN_NULL | COLUMN_OPTIONAL,
      .doc = "a text that may be missing"},
     {"mark", COLUMN_HEX, MADE(mark), .flags = COLUMN_NO_JSON, .doc = "a digest"},
-    {"large", COLUMN_INT64, .part = PART(struct made, inner), .offset = offsetof(struct inner, large),
+    {"large", COLUMN_INT64, .part = PART(struct made, inner),
+     .offset = offsetof(struct inner, large),
      .known = is_pear, .flags = COLUMN_NULL, .doc = "elsewhere"},
     {"twice", COLUMN_INT, .value = twice, .flags = COLUMN_NO_SQL, .doc = "computed"},
     {"list", COLUMN_INT, .json = list, .flags = COLUMN_NO_SQL, .doc = "a list"},
@@ -103,10 +107,11 @@ static void json_has_sorted_keys_and_null_for_what_is_absent(void **state)
 {
     (void)state;
     assert_string_equal(written(write_json),
-                        "[{\"called\": \"n\\\"1\\\"\", \"count\": 3, \"fruit\": \"pear\", \"large\": 1234567890123,"
-                        " \"list\": [3], \"note\": \"so\", \"real_s\": 0.25, \"ripe\": true, \"twice\": 6},"
-                        " {\"called\": \"\", \"count\": null, \"fruit\": \"apple\", \"large\": null, \"list\": [-1],"
-                        " \"real_s\": null, \"ripe\": false, \"twice\": -2}]\n");
+                        "[{\"called\": \"n\\\"1\\\"\", \"count\": 3, \"fruit\": \"pear\", "
+                        "\"large\": 1234567890123, \"list\": [3], \"note\": \"so\", \"real_s\": "
+                        "0.25, \"ripe\": true, \"twice\": 6}, {\"called\": \"\", \"count\": null, "
+                        "\"fruit\": \"apple\", \"large\": null, \"list\": [-1], \"real_s\": null, "
+                        "\"ripe\": false, \"twice\": -2}]\n");
 }
 
 static void the_terminal_gets_aligned_cells_and_dashes(void **state)
@@ -124,7 +129,8 @@ static void the_database_gets_definitions_with_types_and_comments(void **state)
     columns_define(&made_columns, &t);
     assert_string_equal(t.s, "    real_s REAL, -- a time\n"
                              "    count INTEGER, -- a count\n"
-                             "    fruit TEXT NOT NULL CHECK (fruit IN ('apple', 'pear')), -- a word\n"
+                             "    fruit TEXT NOT NULL CHECK (fruit IN ('apple', 'pear')), -- a "
+                             "word\n"
                              "    ripe INTEGER NOT NULL, -- a truth\n"
                              "    name TEXT NOT NULL, -- a text\n"
                              "    note TEXT, -- a text that may be missing\n"
@@ -148,7 +154,8 @@ static void a_digest_is_sixteen_digits(void **state)
 /* A stage's sum over ranks is absent where it does not fit; the extremes stand. */
 static void a_sum_that_wraps_is_absent(void **state)
 {
-    struct stage_time t[2] = {{.compute_ps = INT64_MAX - 1}, {.compute_ps = 2, .messages = 5, .work.sqrt = 7}};
+    struct stage_time t[2] = {{.compute_ps = INT64_MAX - 1},
+                              {.compute_ps = 2, .messages = 5, .work.sqrt = 7}};
     struct run_result r = {.nrank = 2, .nstage = 1, .stage = t};
     const struct stage_row row = stage_row_make(&r, 0);
     struct column_value v = {0};

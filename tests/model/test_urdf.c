@@ -1,4 +1,5 @@
-/* test_urdf.c - robots from URDF: what is read, what is refused and where, and the models made of it. */
+/* test_urdf.c - robots from URDF: what is read, what is refused and where, and the models made of
+ * it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,10 +32,13 @@ static bool read_xml(const char *xml, struct urdf_robot *robot, struct arena *a,
     return good;
 }
 
-#define INERTIAL "<inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>"
+#define INERTIAL                                                                                   \
+    "<inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "                 \
+    "izz='1'/></inertial>"
 #define LINK(name) "<link name='" name "'>" INERTIAL "</link>\n"
-#define JOINT(name, type, parent, child) \
-    "<joint name='" name "' type='" type "'><parent link='" parent "'/><child link='" child "'/></joint>\n"
+#define JOINT(name, type, parent, child)                                                           \
+    "<joint name='" name "' type='" type "'><parent link='" parent "'/><child link='" child        \
+    "'/></joint>\n"
 
 static void links_are_ordered_depth_first_in_the_order_of_joints(void **state)
 {
@@ -42,9 +46,11 @@ static void links_are_ordered_depth_first_in_the_order_of_joints(void **state)
     struct arena *a = arena_create();
     struct urdf_robot robot;
     struct err e;
-    assert_true(read_xml("<robot name='tree'>\n" LINK("leaf2") LINK("leaf1") LINK("arm") LINK("root") LINK("leg")
-                         JOINT("j1", "revolute", "root", "leg") JOINT("j2", "revolute", "root", "arm")
-                         JOINT("j3", "fixed", "leg", "leaf1") JOINT("j4", "continuous", "leg", "leaf2") "</robot>",
+    assert_true(read_xml("<robot name='tree'>\n" LINK("leaf2") LINK("leaf1") LINK("arm")
+                             LINK("root") LINK("leg") JOINT("j1", "revolute", "root", "leg")
+                                 JOINT("j2", "revolute", "root", "arm")
+                                     JOINT("j3", "fixed", "leg", "leaf1")
+                                         JOINT("j4", "continuous", "leg", "leaf2") "</robot>",
                          &robot, a, &e));
     static const char *const expected[] = {"root", "leg", "leaf1", "leaf2", "arm"};
     assert_string_equal(robot.name, "tree");
@@ -60,16 +66,17 @@ static void every_number_of_a_joint_is_read(void **state)
     struct urdf_robot robot;
     struct err e;
     assert_true(read_xml("<robot name='r'>" LINK("a") LINK("b") "<joint name='j' type='prismatic'>"
-                         "<origin xyz='1 -2 3e-1' rpy='0.1 0.2 0.3'/><parent link='a'/><child link='b'/>"
-                         "<axis xyz='0 3 4'/><limit lower='-1' upper='2' effort='5' velocity='6'/>"
+                         "<origin xyz='1 -2 3e-1' rpy='0.1 0.2 0.3'/><parent link='a'/><child "
+                         "link='b'/><axis xyz='0 3 4'/><limit lower='-1' upper='2' effort='5' "
+                         "velocity='6'/>"
                          "<dynamics damping='0.5'/></joint></robot>", &robot, a, &e));
     const struct urdf_joint *j = &robot.joint[0];
     assert_int_equal(j->kind, URDF_PRISMATIC);
     assert_true(j->p[0] == 1 && j->p[1] == -2 && j->p[2] == 0.3);
     assert_near(j->axis[1], 0.6, 1e-16);
     assert_near(j->axis[2], 0.8, 1e-16);
-    assert_true(j->has_limit && j->lower == -1 && j->upper == 2 && j->effort == 5 && j->velocity == 6 &&
-                j->damping == 0.5);
+    assert_true(j->has_limit && j->lower == -1 && j->upper == 2 && j->effort == 5 &&
+                j->velocity == 6 && j->damping == 0.5);
     /* Rz(0.3) Ry(0.2) Rx(0.1) applied to e_x is (cy cp, sy cp, -sp). */
     double x = j->quat[0], y = j->quat[1], z = j->quat[2], w = j->quat[3];
     assert_near(1 - 2 * (y * y + z * z), cos(0.3) * cos(0.2), 1e-15);
@@ -87,18 +94,20 @@ static void inertias_are_turned_into_link_axes(void **state)
     struct urdf_robot robot;
     struct err e;
     assert_true(
-        read_xml("<robot name='r'><link name='base'/><link name='b'><inertial><origin xyz='1 2 3' rpy='0 0 0.5'/>"
-                 "<mass value='4'/><inertia ixx='2' ixy='0' ixz='0' iyy='3' iyz='0' izz='4'/></inertial></link>" JOINT(
-                     "j", "continuous", "base", "b") "</robot>",
+        read_xml("<robot name='r'><link name='base'/><link name='b'><inertial><origin xyz='1 2 3' "
+                 "rpy='0 0 0.5'/><mass value='4'/><inertia ixx='2' ixy='0' ixz='0' iyy='3' iyz='0' "
+                 "izz='4'/></inertial></link>" JOINT("j", "continuous", "base", "b") "</robot>",
                  &robot, a, &e));
     struct urdf_options o = {.keep_fixed = true};
     struct model *m = urdf_model(&robot, &o, a, &e);
     assert_non_null(m);
     assert_int_equal(m->nbody, 1);
     double c = cos(0.5), s = sin(0.5);
-    const double expected[6] = {2 * c * c + 3 * s * s, (2 - 3) * s * c, 0, 2 * s * s + 3 * c * c, 0, 4};
+    const double expected[6] = {
+        2 * c * c + 3 * s * s, (2 - 3) * s * c, 0, 2 * s * s + 3 * c * c, 0, 4};
     for (int i = 0; i < 6; i++) assert_near(m->body[0].inertia[i], expected[i], 1e-15);
-    assert_true(m->body[0].com[0] == 1 && m->body[0].com[1] == 2 && m->body[0].com[2] == 3 && m->body[0].mass == 4);
+    assert_true(m->body[0].com[0] == 1 && m->body[0].com[1] == 2 && m->body[0].com[2] == 3 &&
+                m->body[0].mass == 4);
     arena_destroy(a);
 }
 
@@ -110,12 +119,14 @@ static void fixed_links_become_part_of_their_parents(void **state)
     struct err e;
     assert_true(read_xml(
         "<robot name='r'>\n" LINK("base") LINK("left") LINK("right") "<link name='camera'/>" LINK(
-            "tip") "<joint name='hinge' type='revolute'><parent link='base'/><child link='left'/></joint>"
-                   "<joint name='weld' type='fixed'><origin xyz='2 0 0' rpy='0 0 1.5707963267948966'/>"
+            "tip") "<joint name='hinge' type='revolute'><parent link='base'/><child "
+                   "link='left'/></joint><joint name='weld' type='fixed'><origin xyz='2 0 0' "
+                   "rpy='0 0 1.5707963267948966'/>"
                    "<parent link='left'/><child link='right'/></joint>" JOINT(
-                       "mount", "fixed", "right", "camera") "<joint name='far' type='prismatic'><origin xyz='1 0 "
-                                                            "0'/><parent link='right'/><child link='tip'/></joint>"
-                                                            "</robot>",
+                       "mount", "fixed", "right",
+                       "camera") "<joint name='far' type='prismatic'><origin xyz='1 0 "
+                                                            "0'/><parent link='right'/><child "
+                                                            "link='tip'/></joint></robot>",
         &robot, a, &e));
     struct urdf_options o = {.floating = false};
     struct model *m = urdf_model(&robot, &o, a, &e);
@@ -155,59 +166,77 @@ static void what_is_not_supported_is_listed_with_its_line(void **state)
     arena_destroy(a);
 }
 
+/* A robot with one mistake, the line that must be told, and a part of the message. */
+static const struct { const char *xml; int line; const char *text;
+} malformed[] = {
+    {"<robot name='r'>\n<link name='a'>\n</robot>", 3, "XML"},
+    {"<sdf/>", 1, "not <robot>"},
+    {"<robot name='r'/>", 0, "no links"},
+    {"<robot name='r'>\n<link/></robot>", 2, "without a name"},
+    {"<robot name='r'>\n" LINK("a") LINK("a") "</robot>", 3,
+     "second link 'a'; the first is on line 2"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "hinge", "a", "b") "</robot>", 4,
+     "unknown type 'hinge'"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolut", "a", "b") "</robot>", 4,
+     "did you mean 'revolute'"},
+    {"<robot name='r'>\n" LINK("forearm") LINK("b") JOINT("j", "revolute", "fourarm",
+     "b") "</robot>", 4,
+     "no link 'fourarm'; did you mean 'forearm'"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") "<joint name='j' type='fixed'><parent "
+                                              "link='a'/></joint></robot>", 4,
+     "no <child>"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") "</robot>", 3, "two roots"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolute", "a", "b")
+         JOINT("k", "revolute", "b", "a") "</robot>",
+     2, "cycle"},
+    {"<robot name='r'>\n" LINK("r") LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
+         JOINT("k", "fixed", "b", "a") "</robot>",
+     3, "cycle"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") LINK("c") JOINT("j", "fixed", "a", "c")
+         JOINT("k", "fixed", "b", "c") "</robot>",
+     6, "two parents"},
+    {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
+         JOINT("j", "fixed", "a", "b") "</robot>",
+     5, "second joint 'j'; the first is on line 4"},
+    {"<robot name='r'>\n<link name='a'><inertial><mass value='heavy'/>", 2,
+     "finite number expected"},
+    {"<robot name='r'>\n<link name='a'><inertial><mass value='${m}'/>", 2,
+     "expand xacro first"},
+    {"<robot name='r'>\n<link name='a'><inertial><mass value='inf'/>", 2,
+     "finite number expected"},
+    {"<robot name='r'>\n<link name='a'><inertial><origin xyz='1 2'/>", 2,
+     "3 finite numbers expected"},
+    {"<robot name='r'>\n<link name='a'><inertial><origin xyz='1 2 3 4'/>", 2,
+     "after the last number"},
+    {"<robot name='r'>\n<link name='a'><inertial><origin xzy='1 2 3'/>", 2,
+     "did you mean 'xyz'"},
+    {"<robot name='r'>\n<link name='a'><intertial/>", 2, "did you mean <inertial>"},
+    {"<robot name='r'>\n<link name='a'><inertial>\n</inertial></link></robot>", 3,
+     "without <mass>"},
+    {"<robot name='r'>\n<link name='a'><inertial><mass value='1'/>\n</inertial></link></robot>",
+     3,
+     "without <inertia>"},
+    {"<robot name='r'>\n<link name='a'><inertial><inertia ixx='1'/>", 2, "without ixy="},
+    {"<robot name='r'>\n" LINK("a") "<link name='b'/><joint name='j' type='revolute'>\n<axis "
+                                    "xyz='0 0 0'/>", 4,
+     "axis of joint 'j' has length zero"},
+    {"<robot name='r'>\n<joint name='j' type='revolute'>\n<limit lower='2' upper='1'/>", 3,
+     "above upper limit"},
+};
+
 static void malformed_robots_are_refused_at_their_line(void **state)
 {
     (void)state;
-    static const struct { const char *xml; int line; const char *text;
-    } bad[] = {
-        {"<robot name='r'>\n<link name='a'>\n</robot>", 3, "XML"},
-        {"<sdf/>", 1, "not <robot>"},
-        {"<robot name='r'/>", 0, "no links"},
-        {"<robot name='r'>\n<link/></robot>", 2, "without a name"},
-        {"<robot name='r'>\n" LINK("a") LINK("a") "</robot>", 3, "second link 'a'; the first is on line 2"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "hinge", "a", "b") "</robot>", 4, "unknown type 'hinge'"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolut", "a", "b") "</robot>", 4,
-         "did you mean 'revolute'"},
-        {"<robot name='r'>\n" LINK("forearm") LINK("b") JOINT("j", "revolute", "fourarm", "b") "</robot>", 4,
-         "no link 'fourarm'; did you mean 'forearm'"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") "<joint name='j' type='fixed'><parent link='a'/></joint></robot>", 4,
-         "no <child>"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") "</robot>", 3, "two roots"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolute", "a", "b")
-             JOINT("k", "revolute", "b", "a") "</robot>",
-         2, "cycle"},
-        {"<robot name='r'>\n" LINK("r") LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
-             JOINT("k", "fixed", "b", "a") "</robot>",
-         3, "cycle"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") LINK("c") JOINT("j", "fixed", "a", "c")
-             JOINT("k", "fixed", "b", "c") "</robot>",
-         6, "two parents"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
-             JOINT("j", "fixed", "a", "b") "</robot>",
-         5, "second joint 'j'; the first is on line 4"},
-        {"<robot name='r'>\n<link name='a'><inertial><mass value='heavy'/>", 2, "finite number expected"},
-        {"<robot name='r'>\n<link name='a'><inertial><mass value='${m}'/>", 2, "expand xacro first"},
-        {"<robot name='r'>\n<link name='a'><inertial><mass value='inf'/>", 2, "finite number expected"},
-        {"<robot name='r'>\n<link name='a'><inertial><origin xyz='1 2'/>", 2, "3 finite numbers expected"},
-        {"<robot name='r'>\n<link name='a'><inertial><origin xyz='1 2 3 4'/>", 2, "after the last number"},
-        {"<robot name='r'>\n<link name='a'><inertial><origin xzy='1 2 3'/>", 2, "did you mean 'xyz'"},
-        {"<robot name='r'>\n<link name='a'><intertial/>", 2, "did you mean <inertial>"},
-        {"<robot name='r'>\n<link name='a'><inertial>\n</inertial></link></robot>", 3, "without <mass>"},
-        {"<robot name='r'>\n<link name='a'><inertial><mass value='1'/>\n</inertial></link></robot>", 3,
-         "without <inertia>"},
-        {"<robot name='r'>\n<link name='a'><inertial><inertia ixx='1'/>", 2, "without ixy="},
-        {"<robot name='r'>\n" LINK("a") "<link name='b'/><joint name='j' type='revolute'>\n<axis xyz='0 0 0'/>", 4,
-         "axis of joint 'j' has length zero"},
-        {"<robot name='r'>\n<joint name='j' type='revolute'>\n<limit lower='2' upper='1'/>", 3, "above upper limit"},
-    };
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof malformed / sizeof *malformed; i++) {
         struct arena *a = arena_create();
         struct urdf_robot robot;
         struct err e;
-        assert_false(read_xml(bad[i].xml, &robot, a, &e));
+        assert_false(read_xml(malformed[i].xml, &robot, a, &e));
         assert_int_equal(e.kind, ERR_DATA);
-        if (!strstr(e.text, bad[i].text)) fail_msg("robot %zu: '%s' instead of '%s'", i, e.text, bad[i].text);
-        if (e.line != bad[i].line) fail_msg("robot %zu: line %d instead of %d (%s)", i, e.line, bad[i].line, e.text);
+        if (!strstr(e.text, malformed[i].text))
+            fail_msg("robot %zu: '%s' instead of '%s'", i, e.text, malformed[i].text);
+        if (e.line != malformed[i].line)
+            fail_msg("robot %zu: line %d instead of %d (%s)", i, e.line, malformed[i].line, e.text);
         arena_destroy(a);
     }
 }
@@ -230,15 +259,17 @@ static void impossible_bodies_are_refused_by_name_and_line(void **state)
             char xml[1500];
             snprintf(
                 xml, sizeof xml,
-                "<robot name='r'>\n%s<link name='odd'>\n<inertial><mass value='%s'/><inertia %s/></inertial></link>"
-                "%s<joint name='k' type='%s'><parent link='b'/><child link='odd'/></joint></robot>",
+                "<robot name='r'>\n%s<link name='odd'>\n<inertial><mass value='%s'/><inertia "
+                "%s/></inertial></link>%s<joint name='k' type='%s'><parent link='b'/><child "
+                "link='odd'/></joint></robot>",
                 LINK("a") LINK("b"), bad[i].mass, bad[i].inertia, JOINT("j", "revolute", "a", "b"),
                 fixed ? "fixed" : "planar");
             assert_true(read_xml(xml, &robot, a, &e));
             struct urdf_options o = {.floating = true};
             assert_null(urdf_model(&robot, &o, a, &e));
             assert_non_null(strstr(e.text, "'odd'"));
-            if (!strstr(e.text, bad[i].text)) fail_msg("body %zu: '%s' instead of '%s'", i, e.text, bad[i].text);
+            if (!strstr(e.text, bad[i].text))
+                fail_msg("body %zu: '%s' instead of '%s'", i, e.text, bad[i].text);
             assert_int_equal(e.line, 5);
             err_clear(&e);
             o.allow_nonphysical = true;
@@ -253,9 +284,9 @@ static void a_moving_link_needs_mass(void **state)
     struct arena *a = arena_create();
     struct urdf_robot robot;
     struct err e;
-    assert_true(
-        read_xml("<robot name='r'>\n" LINK("a") "<link name='frame'/>" JOINT("j", "revolute", "a", "frame") "</robot>",
-                 &robot, a, &e));
+    assert_true(read_xml("<robot name='r'>\n" LINK("a") "<link name='frame'/>" JOINT(
+                             "j", "revolute", "a", "frame") "</robot>",
+                         &robot, a, &e));
     struct urdf_options o = {.floating = false};
     assert_null(urdf_model(&robot, &o, a, &e));
     assert_non_null(strstr(e.text, "'frame'"));
@@ -332,7 +363,8 @@ static void real_robots_have_the_bodies_that_others_read(void **state)
                 assert_near(m->body[k].com[j], c.body[k].com[j], 1e-15);
                 assert_near(m->body[k].placement.p[j], c.body[k].placement.p[j], 1e-15);
             }
-            for (int j = 0; j < 6; j++) assert_near(m->body[k].inertia[j], c.body[k].inertia[j], 1e-15);
+            for (int j = 0; j < 6; j++)
+                assert_near(m->body[k].inertia[j], c.body[k].inertia[j], 1e-15);
         }
         arena_destroy(a);
     }

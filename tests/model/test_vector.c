@@ -1,4 +1,5 @@
-/* test_vector.c - reference vectors: read bit by bit, refused where they are wrong, made into models and states. */
+/* test_vector.c - reference vectors: read bit by bit, refused where they are wrong, made into
+ * models and states. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,13 +47,15 @@ static void fixture_end(struct fixture *f)
 static void numbers_come_back_bit_by_bit(void **state)
 {
     (void)state;
-    struct fixture f = fixture_make("{\"x\": [0.1, -1.7976931348623157e+308, 5e-324, 0.30000000000000004,\t1],\n"
-                                    "\t\"s\": \"a \\\"b\\\"\", \"none\": null}\n");
+    struct fixture f =
+        fixture_make("{\"x\": [0.1, -1.7976931348623157e+308, 5e-324, 0.30000000000000004,\t1],\n"
+                     "\t\"s\": \"a \\\"b\\\"\", \"none\": null}\n");
     const struct node *root = document_read(f.path, f.a, &f.e);
     assert_non_null(root);
     double x[5];
     assert_true(document_numbers(root, "x", f.path, x, 5, &f.e));
-    assert_true(x[0] == 0.1 && x[1] == -1.7976931348623157e+308 && x[2] == 5e-324 && x[3] == 0.1 + 0.2 && x[4] == 1);
+    assert_true(x[0] == 0.1 && x[1] == -1.7976931348623157e+308 && x[2] == 5e-324 &&
+                x[3] == 0.1 + 0.2 && x[4] == 1);
     assert_string_equal(document_text(root, "s"), "a \"b\"");
     assert_int_equal(document_find(root, "none")->kind, NODE_NULL);
     assert_int_equal(document_find(root, "s")->line, 2);
@@ -92,7 +95,8 @@ static void bad_documents_are_refused_at_their_line(void **state)
 #define HEAD "{\"format\": \"dynref-1\", \"name\": \"p\", \"gravity\": [0, 0, -9.81],\n"
 #define COUNTS "\"nq\": 1, \"nv\": 1,\n"
 #define FRAME "{\"p\": [0, 0, 0], \"quat\": [0, 0, 0, 1], \"R\": [1, 0, 0, 0, 1, 0, 0, 0, 1]}"
-#define BODY(parent, joint) "\"bodies\": [\n{\"parent\": " parent ", \"joint\": " joint ", \"placement\": " FRAME \
+#define BODY(parent, joint)                                                                        \
+    "\"bodies\": [\n{\"parent\": " parent ", \"joint\": " joint ", \"placement\": " FRAME          \
     ", \"mass\": 1, \"com\": [0, 0, -1], \"inertia_com\": [1, 0, 0, 1, 0, 1]}],\n"
 #define HINGE "{\"type\": \"revolute\", \"axis\": [0, 1, 0]}"
 #define STATE "\"q\": [0.5], \"qd\": [1], \"qdd\": [2],\n"
@@ -104,16 +108,21 @@ static void bad_vectors_are_refused_at_their_line(void **state)
     static const struct { const char *text; int line; const char *why; } bad[] = {
         {"{\"format\": \"other\"}", 1, "dynref-1"},
         {HEAD COUNTS BODY("0", HINGE) STATE ANSWER, 4, "'parent' must be an integer from -1 to -1"},
-        {HEAD COUNTS BODY("-1", "{\"type\": \"hinge\"}") STATE ANSWER, 4, "unknown joint type 'hinge'"},
+        {HEAD COUNTS BODY("-1", "{\"type\": \"hinge\"}") STATE ANSWER, 4,
+         "unknown joint type 'hinge'"},
         {HEAD COUNTS BODY("-1", "{\"type\": \"revolute\"}") STATE ANSWER, 4, "'axis' is missing"},
-        {HEAD COUNTS BODY("-1", "{\"type\": \"revolute\", \"axis\": [0, 2, 0]}") STATE ANSWER, 4, "no unit vector"},
+        {HEAD COUNTS BODY("-1", "{\"type\": \"revolute\", \"axis\": [0, 2, 0]}") STATE ANSWER, 4,
+         "no unit vector"},
         {HEAD COUNTS BODY("-1", "{\"type\": \"fixed\"}") STATE ANSWER, 1, "do not fit the joints"},
-        {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5, 1], \"qd\": [1]}", 5, "'q' has more than the 1 numbers"},
+        {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5, 1], \"qd\": [1]}", 5,
+         "'q' has more than the 1 numbers"},
         {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5], \"qd\": [.inf]}", 5, "finite"},
-        {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5], \"qd\": [1],\n\"tau_id\": [3]}", 1, "without 'qdd'"},
+        {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5], \"qd\": [1],\n\"tau_id\": [3]}", 1,
+         "without 'qdd'"},
         {HEAD COUNTS BODY("-1", HINGE) "\"q\": [0.5], \"qd\": [1]}", 1, "nothing to compare"},
         {HEAD COUNTS BODY("-1", HINGE) STATE "\"joint_spring\": [1],\n" ANSWER, 1, "springs need"},
-        {HEAD COUNTS BODY("-1", HINGE) STATE "\"loops\": [{\"rows\": []}],\n" ANSWER, 6, "1 to 6 rows"},
+        {HEAD COUNTS BODY("-1", HINGE) STATE "\"loops\": [{\"rows\": []}],\n" ANSWER, 6,
+         "1 to 6 rows"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct fixture f = fixture_make(bad[i].text);
@@ -121,7 +130,8 @@ static void bad_vectors_are_refused_at_their_line(void **state)
         assert_false(vector_read(f.path, &c, f.a, &f.e));
         assert_int_equal(f.e.kind, ERR_DATA);
         if (!strstr(f.e.text, bad[i].why)) fail_msg("vector %zu: %s", i, f.e.text);
-        if (f.e.line != bad[i].line) fail_msg("vector %zu: line %d, not %d: %s", i, f.e.line, bad[i].line, f.e.text);
+        if (f.e.line != bad[i].line)
+            fail_msg("vector %zu: line %d, not %d: %s", i, f.e.line, bad[i].line, f.e.text);
         fixture_end(&f);
     }
     struct fixture f = fixture_make(HEAD COUNTS BODY("-1", HINGE) STATE ANSWER);
@@ -171,7 +181,8 @@ static void trajectories_are_read_with_their_springs(void **state)
     assert_memory_equal(c.instant[0].q, c.q, 6 * sizeof *c.q);
     struct model *m = vector_model(&c, a, &e);
     assert_non_null(m);
-    assert_true(m->body[2].stiffness == c.spring[2] && m->body[2].damping == c.damping[2] && c.spring[2] > 0);
+    assert_true(m->body[2].stiffness == c.spring[2] && m->body[2].damping == c.damping[2] &&
+                c.spring[2] > 0);
     arena_destroy(a);
 }
 
@@ -198,14 +209,23 @@ static void wrenches_and_loops_follow_a_lumped_body(void **state)
     struct lumped lumped;
     err_clear(&e);
     struct model *m = model_begin(a, NULL);
-    struct body_def carrier = {.name = "carrier", .parent = -1, .joint = JOINT_REVOLUTE, .axis = {0, 0, 1}, .mass = 1,
+    struct body_def carrier = {.name = "carrier",
+                               .parent = -1,
+                               .joint = JOINT_REVOLUTE,
+                               .axis = {0, 0, 1},
+                               .mass = 1,
                                .inertia = {1, 0, 0, 1, 0, 1}};
     /* turned by 90 degrees about z, 2 m along x */
-    struct body_def part = {.name = "part", .parent = 0, .joint = JOINT_FIXED, .mass = 1, .inertia = {1, 0, 0, 1, 0, 1},
+    struct body_def part = {.name = "part",
+                            .parent = 0,
+                            .joint = JOINT_FIXED,
+                            .mass = 1,
+                            .inertia = {1, 0, 0, 1, 0, 1},
                             .placement = {{0, 0, sqrt(0.5), sqrt(0.5)}, {2, 0, 0}}};
     struct body_def ground = part;
     ground.parent = -1;
-    struct loop_def loop = {.body_a = 1, .body_b = -1, .frame_a = {{0, 0, 0, 1}, {1, 0, 0}}, .nrow = 1, .row = {{1}}};
+    struct loop_def loop = {
+        .body_a = 1, .body_b = -1, .frame_a = {{0, 0, 0, 1}, {1, 0, 0}}, .nrow = 1, .row = {{1}}};
     assert_int_equal(model_add_body(m, &carrier, &e), 0);
     assert_int_equal(model_add_body(m, &part, &e), 1);
     assert_int_equal(model_add_body(m, &ground, &e), 2);

@@ -1,5 +1,5 @@
-/* test_auto.c - the level auto gives every message the times that packet gives it, bit for bit, and costs a fraction
- * where paths do not meet. */
+/* test_auto.c - the level auto gives every message the times that packet gives it, bit for bit, and
+ * costs a fraction where paths do not meet. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,13 +26,20 @@ struct sample {
     struct traffic q;
 };
 
-static int pick(struct random *r, const int *list, int n) { return list[random_below(r, (uint64_t)n)]; }
+static int pick(struct random *r, const int *list, int n)
+{
+    return list[random_below(r, (uint64_t)n)];
+}
 static bool one_in(struct random *r, int n) { return random_below(r, (uint64_t)n) == 0; }
 
 static void draw_network(struct sample *s, struct random *r)
 {
-    static const char *const names[] = {"mesh4x4",  "mesh8x8",       "torus4x4", "torus4x4x8", "torus5x3", "ring8",
-                                        "ring4",    "hcube4",        "hcube6",   "mesh1x8",    "mesh3x5",  "torus2x3x4",
+    static const char *const names[] = {"mesh4x4",       "mesh8x8",
+                                        "torus4x4",      "torus4x4x8",
+                                        "torus5x3",      "ring8",
+                                        "ring4",         "hcube4",
+                                        "hcube6",        "mesh1x8",
+                                        "mesh3x5",       "torus2x3x4",
                                         "fattree_k4_n3", "dragonfly_p2a4h2_72"};
     static const int buffers[] = {5, 6, 8, 12, 16, 22, 64};
     struct err e;
@@ -46,8 +53,10 @@ static void draw_network(struct sample *s, struct random *r)
     s->machine = netcheck_machine(&s->spec, channels, pick(r, buffers, 7), 0, 3);
     struct network_spec *w = &s->machine.network;
     if (one_in(r, 3)) w->arbitration = ARBITRATION_FIRST_COME;
-    if (one_in(r, 2)) w->packet_bytes = 16 * (1 + (int64_t)random_below(r, (uint64_t)w->buffer_flits));
-    if (w->packet_bytes > 0 && w->packet_bytes < 16 * w->buffer_flits && one_in(r, 3)) w->header_bytes = 16;
+    if (one_in(r, 2))
+        w->packet_bytes = 16 * (1 + (int64_t)random_below(r, (uint64_t)w->buffer_flits));
+    if (w->packet_bytes > 0 && w->packet_bytes < 16 * w->buffer_flits && one_in(r, 3))
+        w->header_bytes = 16;
 }
 
 /* rates and latencies that are not one cycle: everything must hold in picoseconds */
@@ -74,23 +83,33 @@ static void draw_times(struct sample *s, struct random *r)
 
 static void draw_messages(struct sample *s, struct random *r)
 {
-    static const int sizes[] = {1, 3, 8, 20, 64}, loads[] = {1, 10, 50, 100, 300, 1000}; /* flits; 1/1000 */
+    /* flits; 1/1000 */
+    static const int sizes[] = {1, 3, 8, 20, 64}, loads[] = {1, 10, 50, 100, 300, 1000};
     struct traffic *q = &s->q;
     int n = 20 + (int)random_below(r, 300), nnode = s->topology->nnode, most = pick(r, sizes, 5);
     double span = 500.0 * n * (1 + most) / (pick(r, loads, 6) * 1e-3 * nnode);
-    int hot = (int)random_below(r, (uint64_t)nnode), shift = 1 + (int)random_below(r, (uint64_t)nnode);
+    int hot = (int)random_below(r, (uint64_t)nnode),
+        shift = 1 + (int)random_below(r, (uint64_t)nnode);
     int pattern = (int)random_below(r, 5), grain = one_in(r, 4) ? 1 : 1000;
     bool depends = one_in(r, 3);
-    *q = (struct traffic){n, TAKE(s->arena, n, int), TAKE(s->arena, n, int), TAKE(s->arena, n, int64_t),
-                          TAKE(s->arena, n, sim_ps), TAKE(s->arena, n, sim_ps), TAKE(s->arena, n + 1, int),
+    *q = (struct traffic){n,
+                          TAKE(s->arena, n, int),
+                          TAKE(s->arena, n, int),
+                          TAKE(s->arena, n, int64_t),
+                          TAKE(s->arena, n, sim_ps),
+                          TAKE(s->arena, n, sim_ps),
+                          TAKE(s->arena, n + 1, int),
                           TAKE(s->arena, 2 * n, int)};
     for (int i = 0; i < n; i++) {
         q->src[i] = (int)random_below(r, (uint64_t)nnode);
-        q->dst[i] = pattern == 1 ? (q->src[i] + shift) % nnode : (int)random_below(r, (uint64_t)nnode);
+        q->dst[i] =
+            pattern == 1 ? (q->src[i] + shift) % nnode : (int)random_below(r, (uint64_t)nnode);
         if (pattern == 2 && one_in(r, 3)) q->dst[i] = hot;
-        q->bytes[i] = 16 * (1 + (int64_t)random_below(r, (uint64_t)most)) - (int64_t)random_below(r, 16);
+        q->bytes[i] =
+            16 * (1 + (int64_t)random_below(r, (uint64_t)most)) - (int64_t)random_below(r, 16);
         q->time[i] = (sim_ps)random_uniform(r, 0, span) / grain * grain;
-        if (pattern == 3) q->time[i] = (sim_ps)random_below(r, 1 + (uint64_t)(span / 5e4)) * 50000; /* bursts */
+        /* bursts */
+        if (pattern == 3) q->time[i] = (sim_ps)random_below(r, 1 + (uint64_t)(span / 5e4)) * 50000;
         q->delay[i] = (sim_ps)random_below(r, 30000) / grain * grain;
         q->dep_first[i + 1] = q->dep_first[i];
         for (int k = depends && i > 5 ? (int)random_below(r, 3) : 0; k > 0; k--)
@@ -129,17 +148,19 @@ static struct answer answer_of(struct sample *s, enum network_level level, bool 
     x.r.injected = x.injected;
     x.r.uncontended = x.uncontended;
     s->machine.network.level = level;
-    if (!traffic_run(&s->q, &s->machine, s->topology, s->arena, want_links, &x.r, &e)) fail_msg("%s", e.text);
+    if (!traffic_run(&s->q, &s->machine, s->topology, s->arena, want_links, &x.r, &e))
+        fail_msg("%s", e.text);
     return x;
 }
 
-static void compare(uint64_t seed, const struct sample *s, const struct answer *p, const struct answer *q)
+static void compare(uint64_t seed, const struct sample *s, const struct answer *p,
+                    const struct answer *q)
 {
     for (int i = 0; i < s->q.nmessage; i++)
         if (p->arrival[i] != q->arrival[i] || p->injected[i] != q->injected[i] ||
             p->uncontended[i] != q->uncontended[i])
-            fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i, (long long)p->arrival[i],
-                     (long long)q->arrival[i]);
+            fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i,
+                     (long long)p->arrival[i], (long long)q->arrival[i]);
     assert_true(p->r.deadlock == q->r.deadlock);
     for (int i = 0; i < p->r.nlink && !p->r.deadlock; i++) {
         const struct link_load *k = &p->r.link[i], *l = &q->r.link[i];
@@ -177,7 +198,8 @@ static void auto_locks_up_like_packet(void **state)
         sample_draw(&s, seed + 5000);
         if (s.spec.family == TOPOLOGY_TORUS) {
             s.machine.network.virtual_channels = 1;
-            struct answer p = answer_of(&s, LEVEL_PACKET, false), q = answer_of(&s, LEVEL_AUTO, false);
+            struct answer p = answer_of(&s, LEVEL_PACKET, false),
+                          q = answer_of(&s, LEVEL_AUTO, false);
             compare(seed, &s, &p, &q);
             locked += p.r.deadlock;
             if (p.r.deadlock) assert_non_null(strstr(q.r.text, "waits for"));
@@ -190,7 +212,8 @@ static void auto_locks_up_like_packet(void **state)
 static void auto_equals_packet_on_the_reference_cases(void **state)
 {
     (void)state;
-    static const char *const file[] = {DATA "makespan.json", DATA "collectives.json", DATA "makespan_sensitivity.json"};
+    static const char *const file[] = {DATA "makespan.json", DATA "collectives.json",
+                                       DATA "makespan_sensitivity.json"};
     bool level[LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
     int ran = 0;
     for (int f = 0; f < 3; f++) {
@@ -200,10 +223,12 @@ static void auto_equals_packet_on_the_reference_cases(void **state)
         err_clear(&e);
         assert_true(netcheck_run(&n, file[f], level, NULL, true, a, &e));
         for (int i = 0; i < n.nrow; i++) {
-            const struct netcheck_answer *p = &n.row[i].answer[LEVEL_PACKET], *q = &n.row[i].answer[LEVEL_AUTO];
+            const struct netcheck_answer *p = &n.row[i].answer[LEVEL_PACKET],
+                                         *q = &n.row[i].answer[LEVEL_AUTO];
             assert_true(p->ran == q->ran);
             ran += p->ran;
-            assert_true(p->found == q->found && p->differing == q->differing && p->message_error == q->message_error);
+            assert_true(p->found == q->found && p->differing == q->differing &&
+                        p->message_error == q->message_error);
         }
         arena_destroy(a);
     }
@@ -226,8 +251,10 @@ static void others_pass(void *subject, uint64_t argument, sim_ps now)
     (void)argument;
     if (h->left == 0) return;
     int link = (int)random_below(&h->random, (uint64_t)h->nlink);
-    assert_true(net_occupy(h->net, link, now, 1 + (sim_ps)random_below(&h->random, (uint64_t)h->busy)));
-    sim_at(h->sim, now + 1 + (sim_ps)random_below(&h->random, (uint64_t)h->gap), 1000, 0, others_pass, h, 0);
+    assert_true(
+        net_occupy(h->net, link, now, 1 + (sim_ps)random_below(&h->random, (uint64_t)h->busy)));
+    sim_at(h->sim, now + 1 + (sim_ps)random_below(&h->random, (uint64_t)h->gap), 1000, 0,
+           others_pass, h, 0);
 }
 
 static void count_down(void *context, struct net_message *m)
@@ -243,9 +270,11 @@ static void start(void *subject, uint64_t argument, sim_ps now)
     net_send(subject, (struct net_message *)(uintptr_t)argument);
 }
 
-static int64_t shared_replay(struct sample *s, enum network_level level, uint64_t seed, sim_ps *arrival)
+static int64_t shared_replay(struct sample *s, enum network_level level, uint64_t seed,
+                             sim_ps *arrival)
 {
-    struct shared h = {.sim = sim_create(), .random = random_make(seed, 31, 0), .left = s->q.nmessage};
+    struct shared h = {
+        .sim = sim_create(), .random = random_make(seed, 31, 0), .left = s->q.nmessage};
     struct arena *a = arena_create();
     struct net_message *m = TAKE(a, s->q.nmessage, struct net_message);
     struct err e;
@@ -255,10 +284,13 @@ static int64_t shared_replay(struct sample *s, enum network_level level, uint64_
     if (!h.net) fail_msg("%s", e.text);
     h.nlink = s->topology->nlink;
     h.busy = 1 + (sim_ps)random_below(&h.random, 60000);
-    h.gap =
-        (1 + 4 * h.busy / (h.nlink + 1)) * (1 + (sim_ps)random_below(&h.random, 20)); /* a fourth or less of its time */
+    h.gap = (1 + 4 * h.busy / (h.nlink + 1)) *
+            (1 + (sim_ps)random_below(&h.random, 20)); /* a fourth or less of its time */
     for (int i = 0; i < s->q.nmessage; i++) {
-        m[i] = (struct net_message){.id = i, .src = s->q.src[i], .dst = s->q.dst[i], .bytes = s->q.bytes[i],
+        m[i] = (struct net_message){.id = i,
+                                    .src = s->q.src[i],
+                                    .dst = s->q.dst[i],
+                                    .bytes = s->q.bytes[i],
                                     .ready = s->q.time[i]};
         sim_at(h.sim, m[i].ready, NET_LANE_START, (uint64_t)i, start, h.net, (uintptr_t)&m[i]);
     }
@@ -282,7 +314,8 @@ static void others_traffic_delays_both_alike(void **state)
         assert_true(shared_replay(&s, LEVEL_AUTO, seed, q) > 0);
         for (int i = 0; i < s.q.nmessage; i++)
             if (p[i] != q[i])
-                fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i, (long long)p[i], (long long)q[i]);
+                fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i,
+                         (long long)p[i], (long long)q[i]);
         assert_true(shared_replay(&s, LEVEL_FLIT, seed, q) > 0);
         arena_destroy(s.arena);
     }
@@ -312,8 +345,8 @@ static double events_per_message(const char *topology, int vcs, double load)
     assert_true(netcheck_topology(topology, 0, &s.spec, &e));
     s.machine = netcheck_machine(&s.spec, vcs, 22, 0, 3);
     s.topology = topology_create(&s.machine.topology, s.arena, &e);
-    assert_true(
-        netcheck_load("uniform", s.topology, 20, load, 400000 / s.topology->nnode + 100000, 3, s.arena, &s.q, &e));
+    assert_true(netcheck_load("uniform", s.topology, 20, load, 400000 / s.topology->nnode + 100000,
+                              3, s.arena, &s.q, &e));
     assert_true(s.q.nmessage > 200);
     struct answer p = answer_of(&s, LEVEL_PACKET, false), q = answer_of(&s, LEVEL_AUTO, false);
     compare(0, &s, &p, &q);

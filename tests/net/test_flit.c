@@ -1,5 +1,5 @@
-/* test_flit.c - wormhole switching: hand cases and every arrival of the reference router, deadlock, and the two ways
- * (trains, single flits) against each other. */
+/* test_flit.c - wormhole switching: hand cases and every arrival of the reference router, deadlock,
+ * and the two ways (trains, single flits) against each other. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -59,7 +59,8 @@ static int exact_rows(const char *file, const char *filter, int64_t *messages)
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         if (!strstr(n.row[i].group, "vc=1")) continue;
         assert_true(n.row[i].compared && x->ran);
-        if (x->differing > 0 || x->deadlock) fail_msg("%s: %d arrivals differ", n.row[i].name, x->differing);
+        if (x->differing > 0 || x->deadlock)
+            fail_msg("%s: %d arrivals differ", n.row[i].name, x->differing);
         *messages += n.row[i].nmessage;
         count++;
     }
@@ -77,7 +78,8 @@ static void one_channel_is_exact(void **state)
     assert_int_equal(messages, 47232 + 19288);
 }
 
-/* routers that compute the route (P4) and allocate the channel (P5) before the switch, up to beyond saturation */
+/* routers that compute the route (P4) and allocate the channel (P5) before the switch, up to beyond
+ * saturation */
 static void stages_are_exact(void **state)
 {
     (void)state;
@@ -164,10 +166,11 @@ static void ring_deadlock_names_the_cycle(void **state)
     }
 }
 
-/* 0 -> 3 and 1 -> 3 share two links and the ejection port; route and channel take a cycle each of a hop's five.
- * 1 -> 3 is alone: 5 R + 2 + 17 = 34. Its tail leaves link 1-2 at 22, so that the channel is allocated at 23 and the
- * head of 0 -> 3, there since 10, crosses at 24. It is behind that tail in the buffers, too: at router 2 it is the
- * front from 28 and crosses at 30, at router 3 from 33 and crosses at 35; 35 + 17 + 2 = 54. */
+/* 0 -> 3 and 1 -> 3 share two links and the ejection port; route and channel take a cycle each of a
+ * hop's five. 1 -> 3 is alone: 5 R + 2 + 17 = 34. Its tail leaves link 1-2 at 22, so that the
+ * channel is allocated at 23 and the head of 0 -> 3, there since 10, crosses at 24. It is behind
+ * that tail in the buffers, too: at router 2 it is the front from 28 and crosses at 30, at router 3
+ * from 33 and crosses at 35; 35 + 17 + 2 = 54. */
 static void heads_wait_for_route_and_channel(void **state)
 {
     (void)state;
@@ -194,7 +197,8 @@ static void heads_wait_for_route_and_channel(void **state)
     }
 }
 
-/* level packet has the same gaps: where packets fit, every arrival of the reference's five stages */
+/* level packet has the same gaps: where packets fit, every arrival of the reference's five
+ * stages */
 static void packets_wait_as_flits_do(void **state)
 {
     (void)state;
@@ -203,16 +207,17 @@ static void packets_wait_as_flits_do(void **state)
     struct err e;
     bool level[LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
     err_clear(&e);
-    if (!netcheck_run(&n, DATA "stages.json", level, "packets that fit", true, a, &e)) fail_msg("%s", e.text);
+    if (!netcheck_run(&n, DATA "stages.json", level, "packets that fit", true, a, &e))
+        fail_msg("%s", e.text);
     assert_int_equal(n.nrow, 1);
     for (int l = LEVEL_PACKET; l < LEVELS; l++)
         if (level[l]) assert_true(n.row[0].answer[l].ran && n.row[0].answer[l].differing == 0);
     arena_destroy(a);
 }
 
-/* Behind a slow injection port (4 cycles a flit) the last flits would catch up with their head, which takes two cycles
- * more at each router; the message is delivered when it is in an empty network of any level: 4 hops of 5, 17 flits of
- * 4, 2 at the ends. */
+/* Behind a slow injection port (4 cycles a flit) the last flits would catch up with their head,
+ * which takes two cycles more at each router; the message is delivered when it is in an empty
+ * network of any level: 4 hops of 5, 17 flits of 4, 2 at the ends. */
 static void slow_ports_keep_zero_load(void **state)
 {
     (void)state;
@@ -254,7 +259,8 @@ static void replay(struct bench *b, const struct flit_way *way, uint64_t seed, s
     if (!n) fail_msg("%s", e.text);
     n->state = way->create(n, &e);
     int flits = 1 + (int)random_below(&r, 40);
-    double span = b->count * flits * 500.0 / b->topology->nnode * (double)(1 + random_below(&r, 20));
+    double span =
+        b->count * flits * 500.0 / b->topology->nnode * (double)(1 + random_below(&r, 20));
     sim_ps at = 0;
     b->delivered = 0;
     for (int i = 0; i < b->count; i++) {
@@ -266,14 +272,16 @@ static void replay(struct bench *b, const struct flit_way *way, uint64_t seed, s
         net_send(n, &b->message[i]);
     }
     while (sim_step(s)) continue;
-    if (b->delivered != b->count) fail_msg("seed %d: %d messages lost", (int)seed, b->count - b->delivered);
+    if (b->delivered != b->count)
+        fail_msg("seed %d: %d messages lost", (int)seed, b->count - b->delivered);
     for (int i = 0; i < b->count; i++) out[i] = b->message[i].arrival;
     sim_destroy(s);
     arena_destroy(a);
 }
 
-/* Trains work out piecewise linear times far ahead, events move single flits; they share no arithmetic. With one
- * channel they must agree, whatever the rates, latencies, buffers and packets. */
+/* Trains work out piecewise linear times far ahead, events move single flits; they share no
+ * arithmetic. With one channel they must agree, whatever the rates, latencies, buffers and
+ * packets. */
 static void trains_equal_single_flits(void **state)
 {
     (void)state;
@@ -294,16 +302,18 @@ static void trains_equal_single_flits(void **state)
             w->routing_latency = 1e-12 * (double)random_below(&r, (uint64_t)setup + 1);
             w->vc_allocation_latency = 1e-12 * (double)setup - w->routing_latency;
         }
-        if (random_below(&r, 3) == 0) w->injection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
-        if (random_below(&r, 3) == 0) w->ejection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
+        if (random_below(&r, 3) == 0)
+            w->injection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
+        if (random_below(&r, 3) == 0)
+            w->ejection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
         if (random_below(&r, 3) == 0) b.machine.software.gap = 1e-9 * (double)random_below(&r, 50);
         if (random_below(&r, 3) == 0) w->arbitration = ARBITRATION_FIRST_COME;
         replay(&b, &flit_train, seed, train);
         replay(&b, &flit_event, seed, flit);
         for (int i = 0; i < b.count; i++)
             if (train[i] != flit[i])
-                fail_msg("seed %d message %d: %lld by train, %lld by flits", (int)seed, i, (long long)train[i],
-                         (long long)flit[i]);
+                fail_msg("seed %d message %d: %lld by train, %lld by flits", (int)seed, i,
+                         (long long)train[i], (long long)flit[i]);
         arena_destroy(b.arena);
     }
 }

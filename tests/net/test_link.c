@@ -1,4 +1,5 @@
-/* test_link.c - message-level contention: hand-derived cases, bounds against the reference router, accounts. */
+/* test_link.c - message-level contention: hand-derived cases, bounds against the reference router,
+ * accounts. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,7 +36,8 @@ static void hand_cases_without_blocking_are_exact(void **state)
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_LINK];
         assert_true(x->ran);
-        if (strchr("CDKL", n.row[i].name[0])) { /* heads of lines block others there, which this level leaves out */
+        if (strchr("CDKL", n.row[i].name[0])) { /* heads of lines block others there, which this
+                                                   level leaves out */
             blocked++;
             assert_true(x->error <= 0);
             continue;
@@ -57,15 +59,18 @@ static void steps_are_bounded_by_reference_and_loggp(void **state)
     ask(&n, DATA "makespan.json", NULL, a);
     assert_int_equal(n.nrow, 800);
     for (int i = 0; i < n.nrow; i++) {
-        const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK], *loggp = &n.row[i].answer[LEVEL_LOGGP];
+        const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK],
+                                     *loggp = &n.row[i].answer[LEVEL_LOGGP];
         if (link->error > 0.005) fail_msg("%s: %g above the reference", n.row[i].name, link->error);
-        if (link->found < loggp->found) fail_msg("%s: below the level without contention", n.row[i].name);
+        if (link->found < loggp->found)
+            fail_msg("%s: below the level without contention", n.row[i].name);
     }
     static const struct {
         const char *group;
         double mean, worst;
-    } bound[] = {{"mesh vc=1 B=5", 0.12, 0.84},  {"mesh vc=1 B=16", 0.08, 0.79},  {"mesh vc=1 B=64", 0.014, 0.30},
-                 {"torus vc=2 B=5", 0.15, 0.73}, {"torus vc=2 B=16", 0.12, 0.70}, {"torus vc=2 B=64", 0.08, 0.35},
+    } bound[] = {{"mesh vc=1 B=5", 0.12, 0.84},   {"mesh vc=1 B=16", 0.08, 0.79},
+                 {"mesh vc=1 B=64", 0.014, 0.30}, {"torus vc=2 B=5", 0.15, 0.73},
+                 {"torus vc=2 B=16", 0.12, 0.70}, {"torus vc=2 B=64", 0.08, 0.35},
                  {"hcube vc=1 B=16", 0, 0}};
     for (size_t i = 0; i < sizeof bound / sizeof *bound; i++) {
         struct netcheck_total t = netcheck_total(&n, bound[i].group, LEVEL_LINK);
@@ -84,7 +89,8 @@ static void collectives_come_out_between(void **state)
     struct netcheck n;
     ask(&n, DATA "collectives.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
-        const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK], *loggp = &n.row[i].answer[LEVEL_LOGGP];
+        const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK],
+                                     *loggp = &n.row[i].answer[LEVEL_LOGGP];
         assert_true(link->found >= loggp->found - 1e-9);
         assert_true(link->error > -0.31 && link->error < 0.03);
     }
@@ -101,8 +107,8 @@ struct sample {
     struct traffic_result out;
 };
 
-static void replay(struct sample *x, const char *topology, enum network_level level, int count, sim_ps span,
-                   struct arena *a, struct topology **t)
+static void replay(struct sample *x, const char *topology, enum network_level level, int count,
+                   sim_ps span, struct arena *a, struct topology **t)
 {
     struct topology_spec *s = TAKE(a, 1, struct topology_spec);
     struct machine_spec *m = TAKE(a, 1, struct machine_spec);
@@ -120,8 +126,10 @@ static void replay(struct sample *x, const char *topology, enum network_level le
         x->bytes[i] = 16 * (1 + (int64_t)random_below(&r, 40));
         x->time[i] = (sim_ps)random_below(&r, (uint64_t)span) * 1000;
     }
-    struct traffic q = {.nmessage = count, .src = x->src, .dst = x->dst, .bytes = x->bytes, .time = x->time};
-    x->out = (struct traffic_result){.arrival = x->arrival, .injected = x->injected, .uncontended = x->uncontended};
+    struct traffic q = {
+        .nmessage = count, .src = x->src, .dst = x->dst, .bytes = x->bytes, .time = x->time};
+    x->out = (struct traffic_result){
+        .arrival = x->arrival, .injected = x->injected, .uncontended = x->uncontended};
     if (!traffic_run(&q, m, *t, a, true, &x->out, &e)) fail_msg("%s", e.text);
     assert_int_equal(x->out.arrived, count);
 }
@@ -129,7 +137,8 @@ static void replay(struct sample *x, const char *topology, enum network_level le
 static void uncontended_is_what_loggp_says(void **state)
 {
     (void)state;
-    static const char *const topologies[] = {"torus4x4x8", "mesh8x8", "hcube7", "fattree_k4_n3", "dragonfly_p2a4h2"};
+    static const char *const topologies[] = {"torus4x4x8", "mesh8x8", "hcube7", "fattree_k4_n3",
+                                             "dragonfly_p2a4h2"};
     struct sample *link = calloc(1, sizeof *link), *loggp = calloc(1, sizeof *loggp);
     for (size_t i = 0; i < sizeof topologies / sizeof *topologies; i++) {
         struct arena *a = arena_create();
@@ -210,15 +219,16 @@ static void a_message_costs_an_event_per_link_and_two(void **state)
     int64_t links = 0;
     replay(x, "torus4x4x8", LEVEL_LINK, 2000, 4000, a, &t);
     for (int m = 0; m < 2000; m++) links += topology_distance(t, x->src[m], x->dst[m]);
-    assert_int_equal(x->out.events, links + 2 * 2000); /* the start is the replay's, the last the ejection port's */
+    /* the start is the replay's, the last the ejection port's */
+    assert_int_equal(x->out.events, links + 2 * 2000);
     free(x);
     arena_destroy(a);
 }
 
 /* ---- particulars ---- */
 
-static void replay_list(const struct topology_spec *s, enum network_level level, struct traffic *q, sim_ps *arrival,
-                        struct machine_spec *m)
+static void replay_list(const struct topology_spec *s, enum network_level level, struct traffic *q,
+                        sim_ps *arrival, struct machine_spec *m)
 {
     struct arena *a = arena_create();
     struct err e;
@@ -239,7 +249,8 @@ static void transactions_of_a_bus_follow_one_another(void **state)
     int64_t bytes[N];
     sim_ps time[N] = {0}, arrival[N];
     struct topology_spec s = {
-        .family = TOPOLOGY_BUS, .ndim = 1, .dims = {N}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_BUS, .ndim = 1, .dims = {N}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 0);
     m.network.end_latency = 0;
     for (int i = 0; i < N; i++) {
@@ -269,8 +280,10 @@ static void a_slow_dimension_holds_its_links_longer(void **state)
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic q = {.nmessage = 2, .src = src, .dst = dst, .bytes = bytes, .time = time};
     replay_list(&s, LEVEL_LINK, &q, arrival, &m);
-    assert_int_equal(arrival[1], (4 * 3 + 19 * 4 + 2) * 1000);          /* 20 flits, one in 4 cycles */
-    assert_int_equal(arrival[0], (3 + 80 + 3 * 3 + 19 * 4 + 2) * 1000); /* from when the first frees the column */
+    /* 20 flits, one in 4 cycles */
+    assert_int_equal(arrival[1], (4 * 3 + 19 * 4 + 2) * 1000);
+    /* from when the first frees the column */
+    assert_int_equal(arrival[0], (3 + 80 + 3 * 3 + 19 * 4 + 2) * 1000);
 }
 
 /* Others' messages, one every `period` on each link, asked for or as events. */
@@ -329,9 +342,11 @@ static int64_t replay_shared(int how, sim_ps *arrival)
     struct err e;
     err_clear(&e);
     struct topology_spec s = {
-        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
-    struct others o = {.sim = sim_create(), .period = 40000, .busy = 13000, .left = SHARED_MESSAGES};
+    struct others o = {
+        .sim = sim_create(), .period = 40000, .busy = 13000, .left = SHARED_MESSAGES};
     m.network.level = LEVEL_LINK;
     struct topology *t = topology_create(&m.topology, a, &e);
     o.net = t ? net_create(&m, t, o.sim, a, one_less, &o, false, &e) : NULL;
@@ -340,7 +355,8 @@ static int64_t replay_shared(int how, sim_ps *arrival)
     /* All times are whole cycles, so that many heads come at the instant of another's message. */
     for (int i = 0; how != ALONE && i < t->nlink; i++) {
         o.next[i] = 1000 * (i % 37);
-        if (how == EVENTS) sim_at(o.sim, o.next[i], NET_LANE_START - 1, (uint64_t)i, others_pass, &o, (uint64_t)i);
+        if (how == EVENTS)
+            sim_at(o.sim, o.next[i], NET_LANE_START - 1, (uint64_t)i, others_pass, &o, (uint64_t)i);
     }
     if (how == ASKED) assert_true(net_ask_others(o.net, others_before, &o));
     struct net_message *message = TAKE(a, SHARED_MESSAGES, struct net_message);
@@ -371,11 +387,13 @@ static void others_asked_for_delay_as_their_events_do(void **state)
 static void wrong_lists_are_refused(void **state)
 {
     (void)state;
-    int node[] = {0, 1}, beyond[] = {0, 9}, first[] = {0, 1, 2}, self[] = {1, 1}, missing[] = {1, 7};
+    int node[] = {0, 1}, beyond[] = {0, 9}, first[] = {0, 1, 2}, self[] = {1, 1},
+        missing[] = {1, 7};
     int64_t bytes[] = {16, 16}, negative[] = {16, -1};
     sim_ps time[] = {0, 0};
     struct topology_spec s = {
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic bad[] = {
         {.nmessage = 2, .src = node, .dst = beyond, .bytes = bytes, .time = time},
@@ -416,7 +434,8 @@ static void messages_that_wait_for_each_other_are_reported(void **state)
     int64_t bytes[] = {16, 16, 16};
     sim_ps zero[] = {0, 0, 0}, arrival[3];
     struct topology_spec s = {
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic q = {3, src, dst, bytes, zero, zero, first, dep};
     struct arena *a = arena_create();

@@ -1,4 +1,5 @@
-/* test_loggp.c - the level without contention against LogGP's recursions and closed forms, in integers. */
+/* test_loggp.c - the level without contention against LogGP's recursions and closed forms, in
+ * integers. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +12,8 @@
 #include "base/random.h"
 #include "net/traffic.h"
 
-/* LogGP parameters and operation time, whole picoseconds, g >= G so that a message of one byte obeys g */
+/* LogGP parameters and operation time, whole picoseconds, g >= G so that a message of one byte
+ * obeys g */
 struct loggp {
     sim_ps o, g, G, L, tf;
 };
@@ -38,7 +40,8 @@ static struct machine_spec crossbar(const struct loggp *p, int nrank)
 {
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.network = (struct network_spec){.level = LEVEL_LOGGP,
                                       .link_bandwidth = 1e12 / (double)p->G,
                                       .hop_latency = (double)(p->L / 3) * 1e-12,
@@ -66,13 +69,15 @@ static void row_end(struct row *w)
     arena_destroy(w->arena);
 }
 
-/* send b bytes to `to`, if it is there; the receiver will know it as from its left (side 0) or right (1) */
+/* send b bytes to `to`, if it is there; the receiver will know it as from its left (side 0) or
+ * right (1) */
 static void row_send(struct row *w, int from, int to, int side, int64_t b)
 {
     if (to < 0 || to >= w->nrank) return;
     struct net_message *m = &w->in[2 * to + side];
     w->clock[from] += w->p.o;
-    *m = (struct net_message){.src = from, .dst = to, .bytes = b, .id = w->sent++, .ready = w->clock[from]};
+    *m = (struct net_message){
+        .src = from, .dst = to, .bytes = b, .id = w->sent++, .ready = w->clock[from]};
     net_send(w->net, m);
 }
 
@@ -106,7 +111,8 @@ static sim_ps one(const struct loggp *p, int64_t b) { return 2 * p->o + (b - 1) 
 
 static sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
-/* symmetric exchange: b1 to one side first, b2 to the other, receive and work w flops, receive and work w */
+/* symmetric exchange: b1 to one side first, b2 to the other, receive and work w flops, receive and
+ * work w */
 static sim_ps two(const struct loggp *p, int64_t b1, int64_t b2, int64_t w)
 {
     sim_ps a1 = p->o + (b1 - 1) * p->G + p->L;
@@ -141,7 +147,8 @@ static void a_scan_takes_lg_messages_and_combinations(void **state)
 static void parallel_cyclic_reduction_takes_its_closed_form(void **state)
 {
     (void)state;
-    enum { BYTES = 8 * (75 + 5), WORK = 700 }; /* conventional form: the same bytes both ways, the same work per side */
+    /* conventional form: the same bytes both ways, the same work per side */
+    enum { BYTES = 8 * (75 + 5), WORK = 700 };
     struct random r = random_make(2, 0, 0);
     for (int trial = 0; trial < 40; trial++) {
         struct loggp p = random_parameters(&r);
@@ -163,7 +170,8 @@ static void parallel_cyclic_reduction_takes_its_closed_form(void **state)
                         w.clock[i] += WORK * p.tf;
                     }
             }
-            assert_int_equal(row_time(&w), (lg - 1) * two(&p, BYTES, BYTES, WORK) + one(&p, BYTES) + WORK * p.tf);
+            assert_int_equal(row_time(&w),
+                             (lg - 1) * two(&p, BYTES, BYTES, WORK) + one(&p, BYTES) + WORK * p.tf);
             row_end(&w);
         }
     }
@@ -178,7 +186,8 @@ static void random_programs_follow_the_recursion_on_a_torus(void **state)
     struct loggp p = random_parameters(&r);
     struct machine_spec m = crossbar(&p, NODES);
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_TORUS, .ndim = 3, .dims = {5, 4, 3}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_TORUS, .ndim = 3, .dims = {5, 4, 3}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct row w;
     row_make(&w, &m, &p, NODES);
     struct topology *t = topology_create(&m.topology, w.arena, &(struct err){0});
@@ -205,15 +214,18 @@ static void random_programs_follow_the_recursion_on_a_torus(void **state)
 static void only_the_own_port_delays(void **state)
 {
     (void)state;
-    /* three messages from node 0, three to node 3: the first wait for the port, the others for nothing */
+    /* three messages from node 0, three to node 3: the first wait for the port, the others for
+     * nothing */
     int src[] = {0, 0, 0, 1, 2}, dst[] = {3, 2, 3, 3, 3};
     int64_t bytes[] = {160, 16, 320, 1600, 1600};
     sim_ps time[] = {5000, 5000, 5000, 0, 0}, arrival[5], uncontended[5];
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.network = (struct network_spec){
-        .level = LEVEL_LOGGP, .link_bandwidth = 16e9, .hop_latency = 3e-9, .end_latency = 2e-9, .flit_bytes = 16};
+        .level = LEVEL_LOGGP, .link_bandwidth = 16e9, .hop_latency = 3e-9, .end_latency = 2e-9,
+        .flit_bytes = 16};
     m.software.eager_bytes = -1;
     struct arena *a = arena_create();
     struct err e;
@@ -250,9 +262,11 @@ static void processors_of_a_node_share_its_port(void **state)
     for (int level = LEVEL_LOGGP; level <= LEVEL_LINK; level++) {
         struct machine_spec m = {.name = "test"};
         m.topology = (struct topology_spec){
-            .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {2}, .nodes_per_router = 1, .processors_per_node = 2};
+            .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {2}, .nodes_per_router = 1,
+            .processors_per_node = 2};
         m.network = (struct network_spec){
-            .level = (enum network_level)level, .link_bandwidth = 1e9, .hop_latency = 3e-9, .end_latency = 2e-9};
+            .level = (enum network_level)level, .link_bandwidth = 1e9, .hop_latency = 3e-9,
+            .end_latency = 2e-9};
         m.software.eager_bytes = -1;
         struct arena *a = arena_create();
         struct sim *s = sim_create();
@@ -262,10 +276,12 @@ static void processors_of_a_node_share_its_port(void **state)
         struct topology *t = topology_create(&m.topology, a, &e);
         struct net *n = net_create(&m, t, s, a, count_arrival, &seen, false, &e);
         assert_non_null(n);
-        /* handed over out of order: processor 1 has run ahead; its two messages are its own affair */
-        struct net_message x[] = {{.src = 0, .dst = 1, .processor = 1, .bytes = 10, .id = 0, .ready = 4000},
-                                  {.src = 0, .dst = 1, .processor = 1, .bytes = 10, .id = 1, .ready = 5000},
-                                  {.src = 0, .dst = 1, .processor = 0, .bytes = 20, .id = 2, .ready = 1000}};
+        /* handed over out of order: processor 1 has run ahead; its two messages are its own
+         * affair */
+        struct net_message x[] = {
+            {.src = 0, .dst = 1, .processor = 1, .bytes = 10, .id = 0, .ready = 4000},
+            {.src = 0, .dst = 1, .processor = 1, .bytes = 10, .id = 1, .ready = 5000},
+            {.src = 0, .dst = 1, .processor = 0, .bytes = 20, .id = 2, .ready = 1000}};
         for (int i = 0; i < 3; i++) net_send(n, &x[i]);
         while (sim_step(s)) continue;
         assert_int_equal(seen.n, 3);

@@ -1,8 +1,10 @@
-/* test_mutants.c - the check of reference files is itself checked: seeded faults are put into their answers and keys.
+/* test_mutants.c - the check of reference files is itself checked: seeded faults are put into their
+ * answers and keys.
  *
- * Each mutant is one case of a file with one fault: a digit, the sign or the factor 3 of a number, two answers
- * exchanged, a key dropped or misspelt. It is killed when the file is refused or a verdict is FAIL. Those that change
- * an answer by more than ten times its tolerance must all be killed; so must all keys that are dropped or misspelt. */
+ * Each mutant is one case of a file with one fault: a digit, the sign or the factor 3 of a number,
+ * two answers exchanged, a key dropped or misspelt. It is killed when the file is refused or a
+ * verdict is FAIL. Those that change an answer by more than ten times its tolerance must all be
+ * killed; so must all keys that are dropped or misspelt. */
 #include <ctype.h>
 #include <math.h>
 #include <setjmp.h>
@@ -25,7 +27,8 @@
 
 enum { SEED = 20261122, MOST_PLACES = 8192, MOST_CASES = 1024 };
 enum fault { DIGIT, SIGN, TRIPLE, EXCHANGE, DROP, MISSPELL, FAULTS };
-static const char *const fault_names[] = {"digit", "sign", "factor 3", "exchange", "dropped key", "misspelt key"};
+static const char *const fault_names[] = {"digit",    "sign",        "factor 3",
+                                          "exchange", "dropped key", "misspelt key"};
 
 /* A number of a case: where it stands, and the keys above it. */
 struct place {
@@ -122,7 +125,8 @@ static void scan_case(struct sample *c)
             scan.depth++;
             scan.map[scan.depth] = x == '{';
             scan.list[scan.depth] = ++scan.nlist;
-            text_copy(scan.key[scan.depth], sizeof scan.key[0], x == '[' ? scan.key[scan.depth - 1] : "");
+            text_copy(scan.key[scan.depth], sizeof scan.key[0],
+                      x == '[' ? scan.key[scan.depth - 1] : "");
             expect_key = x == '{';
             i++;
         } else if (x == '"' && expect_key) {
@@ -159,8 +163,8 @@ static int cases_of(const char *s, const char *begin[MOST_CASES], int length[MOS
 
 /* ---- faults ---- */
 
-/* what is said of a file with this case, and another one `with` it (NULL: none): refused or FAIL; the tightest
- * tolerances when `c` wants them */
+/* what is said of a file with this case, and another one `with` it (NULL: none): refused or FAIL;
+ * the tightest tolerances when `c` wants them */
 static bool killed(const char *text, const char *with, const char *path, struct sample *c)
 {
     struct arena *a = arena_create();
@@ -171,11 +175,13 @@ static bool killed(const char *text, const char *with, const char *path, struct 
     fprintf(f, "[%s%s%s]\n", text, with ? ",\n" : "", with ? with : "");
     fclose(f);
     err_clear(&e);
-    bool read = netcheck_run(&n, path, NULL, NULL, true, a, &e), good = read && netcheck_pass(&n, -1);
+    bool read = netcheck_run(&n, path, NULL, NULL, true, a, &e),
+         good = read && netcheck_pass(&n, -1);
     if (c) c->tolerance = c->message = good ? INFINITY : 0;
     for (int i = 0; c && good && i < n.nrow; i++)
         for (int l = 0; l < LEVELS; l++) {
-            const struct netcheck_accuracy *s = netcheck_accuracy_of(&n.row[i], (enum network_level)l);
+            const struct netcheck_accuracy *s =
+                netcheck_accuracy_of(&n.row[i], (enum network_level)l);
             if (!n.row[i].counted || !n.row[i].answer[l].ran) continue;
             c->tolerance = fmin(c->tolerance, fmax(-s->low, s->high));
             if (s->message >= 0) c->message = fmin(c->message, s->message);
@@ -208,14 +214,18 @@ static enum answer answer_of(const struct place *p)
                  {"flit_hops", DERIVED},
                  {"channel_bound", DERIVED},
                  {"max_channel_load_per_unit_injection", DERIVED}};
-    if (strcmp(p->outer, "booksim") == 0 || strcmp(p->outer, "expected_wormhole") == 0) return MESSAGE;
+    if (strcmp(p->outer, "booksim") == 0 || strcmp(p->outer, "expected_wormhole") == 0)
+        return MESSAGE;
     if (strcmp(p->outer, "makespan_by_variant") == 0) return VARIANT;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(p->key, known[i].key) == 0) return known[i].answer;
     return NO_ANSWER;
 }
 
-static double number_at(const struct sample *c, const struct place *p) { return strtod(c->text + p->begin, NULL); }
+static double number_at(const struct sample *c, const struct place *p)
+{
+    return strtod(c->text + p->begin, NULL);
+}
 
 static void put(struct text *t, const struct sample *c, const struct place *p, double x)
 {
@@ -250,10 +260,13 @@ static double change_of(const struct sample *c, const struct place *p, double fr
     return tolerance > 0 ? fabs(to - from) / fmax(fabs(from), 1e-9) / tolerance : INFINITY;
 }
 
-static bool mutate_number(struct sample *c, enum fault fault, struct random *r, struct text *t, double *change)
+static bool mutate_number(struct sample *c, enum fault fault, struct random *r, struct text *t,
+                          double *change)
 {
     const struct place *p = &c->place[random_below(r, (uint64_t)c->nplace)];
-    double from = number_at(c, p), to = fault == SIGN ? -from : fault == TRIPLE ? 3 * from : other_digit(c, p, r);
+    double from = number_at(c, p), to = fault == SIGN     ? -from
+                                        : fault == TRIPLE ? 3 * from
+                                                          : other_digit(c, p, r);
     if (answer_of(p) == NO_ANSWER || to == from) return false;
     *change = change_of(c, p, from, to);
     put(t, c, p, to);
@@ -268,7 +281,8 @@ static bool mutate_exchange(struct sample *c, struct random *r, struct text *t, 
         if (other->list == p->list && other->begin > p->begin) q = other;
     }
     if (strstr(c->text, "\"order_free\": true")) return false; /* they are a set */
-    if (!q || p->list == 0 || answer_of(p) != MESSAGE || number_at(c, p) == number_at(c, q)) return false;
+    if (!q || p->list == 0 || answer_of(p) != MESSAGE || number_at(c, p) == number_at(c, q))
+        return false;
     double x = number_at(c, p), y = number_at(c, q);
     *change = fmax(change_of(c, p, x, y), change_of(c, q, y, x));
     text_add_bytes(t, c->text, (size_t)p->begin);
@@ -303,7 +317,8 @@ static bool key_matters(const char *key)
     return true;
 }
 
-static bool mutate_key(struct sample *c, enum fault fault, struct random *r, struct text *t, double *change)
+static bool mutate_key(struct sample *c, enum fault fault, struct random *r, struct text *t,
+                       double *change)
 {
     const struct key_place *k = &c->key[random_below(r, (uint64_t)c->nkey)];
     int length = (int)strlen(k->key);
@@ -314,7 +329,8 @@ static bool mutate_key(struct sample *c, enum fault fault, struct random *r, str
         text_add_bytes(t, c->text + k->end, (size_t)(c->length - k->end));
         return true;
     }
-    int at = k->name + 1 + (int)random_below(r, (uint64_t)(length - 2)); /* two letters change places */
+    /* two letters change places */
+    int at = k->name + 1 + (int)random_below(r, (uint64_t)(length - 2));
     if (c->text[at] == c->text[at + 1]) return false;
     text_add_bytes(t, c->text, (size_t)at);
     text_add(t, "%c%c", c->text[at + 1], c->text[at]);
@@ -322,7 +338,8 @@ static bool mutate_key(struct sample *c, enum fault fault, struct random *r, str
     return true;
 }
 
-static bool mutate(struct sample *c, enum fault fault, struct random *r, struct text *t, double *change)
+static bool mutate(struct sample *c, enum fault fault, struct random *r, struct text *t,
+                   double *change)
 {
     *change = 0;
     if (fault == DROP || fault == MISSPELL) return mutate_key(c, fault, r, t, change);
@@ -330,7 +347,8 @@ static bool mutate(struct sample *c, enum fault fault, struct random *r, struct 
     return mutate_number(c, fault, r, t, change);
 }
 
-static void try_case(struct sample *c, int mutants, const char *path, struct random *r, struct tally *tally)
+static void try_case(struct sample *c, int mutants, const char *path, struct random *r,
+                     struct tally *tally)
 {
     for (int i = 0; i < mutants; i++) {
         enum fault fault = (enum fault)(i % FAULTS);
@@ -386,8 +404,9 @@ static void mutants_die(const char *file, int ncase, int mutants)
     print_message("%s\n", strrchr(file, '/') + 1);
     int alive = 0;
     for (int f = 0; f < FAULTS; f++) {
-        print_message("  %-12s %4d of %4d killed (%3.0f %%); beyond ten tolerances %4d of %4d\n", fault_names[f],
-                      tally.killed[f], tally.made[f], tally.made[f] ? 100.0 * tally.killed[f] / tally.made[f] : 100.0,
+        print_message("  %-12s %4d of %4d killed (%3.0f %%); beyond ten tolerances %4d of %4d\n",
+                      fault_names[f], tally.killed[f], tally.made[f],
+                      tally.made[f] ? 100.0 * tally.killed[f] / tally.made[f] : 100.0,
                       tally.must_killed[f], tally.must[f]);
         alive += tally.must[f] - tally.must_killed[f];
     }

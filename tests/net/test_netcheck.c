@@ -1,4 +1,5 @@
-/* test_netcheck.c - reference files: names and patterns understood, wrong files refused, statistics and JSON right. */
+/* test_netcheck.c - reference files: names and patterns understood, wrong files refused, statistics
+ * and JSON right. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -65,7 +66,8 @@ static void names_of_topologies_are_understood(void **state)
     }
 }
 
-static void load(const char *topology, const char *pattern, double offered, struct traffic *q, struct arena *a)
+static void load(const char *topology, const char *pattern, double offered, struct traffic *q,
+                 struct arena *a)
 {
     struct err e;
     struct topology_spec *s = TAKE(a, 1, struct topology_spec);
@@ -81,8 +83,9 @@ static void patterns_send_where_they_say(void **state)
     static const struct {
         const char *pattern;
         int from, to; /* on 8 x 8: from 011001 = 25, column 1, row 3 */
-    } fixed[] = {{"bitcomp", 25, 38},      {"bitrev", 25, 38},        {"transpose", 25, 11}, {"shuffle", 25, 50},
-                 {"tornado(8,2)", 25, 52}, {"neighbor(8,2)", 25, 34}, {"shift(40)", 25, 1},     {"xor(38)", 25, 63}};
+    } fixed[] = {{"bitcomp", 25, 38},  {"bitrev", 25, 38},       {"transpose", 25, 11},
+                 {"shuffle", 25, 50},  {"tornado(8,2)", 25, 52}, {"neighbor(8,2)", 25, 34},
+                 {"shift(40)", 25, 1}, {"xor(38)", 25, 63}};
     struct arena *a = arena_create();
     struct traffic q;
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) {
@@ -137,12 +140,12 @@ static void wrong_files_are_refused_and_odd_cases_told(void **state)
         "[]",
         "[{\"topology\": \"mesh8x8\"}]",
         "[{\"topology\": \"mesh8x8\", \"points\": [{}]}]",
-        "[{\"topology\": \"mesh2x2\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 3, \"makespan\": 9, "
-        "\"completion\": [1, 2]}]",
-        "[{\"topology\": \"mesh2x2\", \"pattern\": \"spiral\", \"distance\": 1, \"flits\": 3, \"makespan\": 9, "
-        "\"completion\": [1, 2, 3, 4]}]",
-        "[{\"topology\": \"mesh2x2\", \"makespan\": 1, \"trace\": {\"src\": [0], \"flits\": [1]}, \"completion\": "
-        "[1]}]"};
+        "[{\"topology\": \"mesh2x2\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 3, "
+        "\"makespan\": 9, \"completion\": [1, 2]}]",
+        "[{\"topology\": \"mesh2x2\", \"pattern\": \"spiral\", \"distance\": 1, \"flits\": 3, "
+        "\"makespan\": 9, \"completion\": [1, 2, 3, 4]}]",
+        "[{\"topology\": \"mesh2x2\", \"makespan\": 1, \"trace\": {\"src\": [0], \"flits\": [1]}, "
+        "\"completion\": [1]}]"};
     char folder[256], path[300];
     scratch_make(folder, sizeof folder);
     scratch_path(path, sizeof path, folder, "cases.json");
@@ -157,14 +160,16 @@ static void wrong_files_are_refused_and_odd_cases_told(void **state)
         assert_true(e.text[0]);
         arena_destroy(a);
     }
-    /* a case of a network that we do not have is a row without answers, not the end of the others */
+    /* a case of a network that we do not have is a row without answers, not the end of the
+     * others */
     struct arena *a = arena_create();
     struct netcheck n;
     struct err e;
     err_clear(&e);
     write_file(path,
-               "[{\"topology\": \"moebius8\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 3}, "
-               "{\"topology\": \"mesh2x2\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 3}]");
+               "[{\"topology\": \"moebius8\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": "
+               "3}, {\"topology\": \"mesh2x2\", \"pattern\": \"shift\", \"distance\": 1, "
+               "\"flits\": 3}]");
     assert_true(netcheck_run(&n, path, NULL, NULL, true, a, &e));
     assert_int_equal(n.nrow, 2);
     assert_false(n.row[0].answer[LEVEL_LINK].ran);
@@ -188,13 +193,15 @@ static void totals_count_what_the_rows_say(void **state)
         {.group = "h", .nmessage = 5, .compared = false, .counted = true, .low = 90, .high = 110},
         {.group = "g", .nmessage = 5, .counted = false},
     };
-    row[0].answer[LEVEL_LINK] = (struct netcheck_answer){.ran = true, .error = 0, .differing = 0, .message_error = 0};
+    row[0].answer[LEVEL_LINK] =
+        (struct netcheck_answer){.ran = true, .error = 0, .differing = 0, .message_error = 0};
     row[1].answer[LEVEL_LINK] =
         (struct netcheck_answer){.ran = true, .error = -0.2, .differing = 3, .message_error = 0.1};
     row[2].answer[LEVEL_LINK] = (struct netcheck_answer){.ran = false};
     row[3].answer[LEVEL_LINK] = (struct netcheck_answer){.ran = true, .error = 7};
     struct netcheck n = {.path = "made", .nrow = 4, .row = row};
-    struct netcheck_total t = netcheck_total(&n, "g", LEVEL_LINK), all = netcheck_total(&n, NULL, LEVEL_LINK);
+    struct netcheck_total t = netcheck_total(&n, "g", LEVEL_LINK),
+                          all = netcheck_total(&n, NULL, LEVEL_LINK);
     assert_int_equal(t.cases, 2);
     assert_int_equal(t.exact_cases, 1);
     assert_int_equal(t.messages, 40);
@@ -238,7 +245,8 @@ static void latencies_follow_the_reference(void **state)
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_LINK];
         assert_int_equal(x->ran, n.row[i].counted);
-        if (x->ran && !(x->error > -0.06 && x->error < 0.06)) fail_msg("%s: %g", n.row[i].name, x->error);
+        if (x->ran && !(x->error > -0.06 && x->error < 0.06))
+            fail_msg("%s: %g", n.row[i].name, x->error);
     }
     assert_true(netcheck_total(&n, NULL, LEVEL_LINK).mean < 0.02);
     arena_destroy(a);
@@ -263,7 +271,8 @@ static void json_reads_back(void **state)
     fclose(out);
     const struct node *root = document_read(path, a, &e);
     assert_non_null(root);
-    const struct node *cases = document_find(root, "cases"), *totals = document_find(root, "totals");
+    const struct node *cases = document_find(root, "cases"),
+                      *totals = document_find(root, "totals");
     assert_true(cases && cases->count == 53 && totals && totals->count == 3);
     const struct node *answer = document_find(document_find(cases->child, "levels"), "link");
     double found;

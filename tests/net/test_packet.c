@@ -1,4 +1,5 @@
-/* test_packet.c - virtual cut-through: hand cases, the reference router, refusals, deadlock, accounts. */
+/* test_packet.c - virtual cut-through: hand cases, the reference router, refusals, deadlock,
+ * accounts. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -33,8 +34,8 @@ static void hand_cases_are_exact(void **state)
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_PACKET];
         assert_true(x->ran && x->error == 0);
-        if (n.row[i].name[0] ==
-            'L') { /* derived for one FIFO per link; with two dateline classes one arrives earlier */
+        if (n.row[i].name[0] == 'L') { /* derived for one FIFO per link; with two dateline classes
+                                          one arrives earlier */
             assert_int_equal(x->differing, 1);
             continue;
         }
@@ -168,7 +169,8 @@ static void refused(struct bench *b, const char *key, const char *value)
     err_clear(&e);
     assert_false(traffic_run(&q, &b->machine, b->topology, b->arena, false, &r, &e));
     assert_int_equal(e.kind, ERR_CONFIG);
-    if (!strstr(e.text, key) || !strstr(e.text, value)) fail_msg("'%s' names neither %s nor %s", e.text, key, value);
+    if (!strstr(e.text, key) || !strstr(e.text, value))
+        fail_msg("'%s' names neither %s nor %s", e.text, key, value);
 }
 
 static void buffers_too_small_are_refused(void **state)
@@ -192,8 +194,8 @@ static void buffers_too_small_are_refused(void **state)
     arena_destroy(b.arena);
 }
 
-/* every node of a ring of four sends two hops on: L with one FIFO per link, 3S + 4; with buffers of one message the
- * FIFOs fill in a circle */
+/* every node of a ring of four sends two hops on: L with one FIFO per link, 3S + 4; with buffers of
+ * one message the FIFOs fill in a circle */
 static void a_ring_without_classes(void **state)
 {
     (void)state;
@@ -222,8 +224,8 @@ static void a_ring_without_classes(void **state)
     arena_destroy(b.arena);
 }
 
-/* A message of 40 flits on buffers of 16 is 16 + 16 + 8, back to back: alone as fast as in one piece, and the message
- * behind it on the same way waits for its last flit. */
+/* A message of 40 flits on buffers of 16 is 16 + 16 + 8, back to back: alone as fast as in one
+ * piece, and the message behind it on the same way waits for its last flit. */
 static void long_messages_travel_in_pieces(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* test_zero_load.c - a message alone takes the closed form's time, exactly, on every family at every level. */
+/* test_zero_load.c - a message alone takes the closed form's time, exactly, on every family at
+ * every level. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,17 +29,20 @@ static struct machine_spec machine(const struct topology_spec *s)
     return m;
 }
 
-/* when one message, ready at `ready`, arrives in the empty network [ps]; *zero: what net_zero_load says */
-static sim_ps arrival_alone(const struct machine_spec *m, const struct topology *t, int src, int dst, int64_t bytes,
-                            sim_ps ready)
+/* when one message, ready at `ready`, arrives in the empty network [ps]; *zero: what net_zero_load
+ * says */
+static sim_ps arrival_alone(const struct machine_spec *m, const struct topology *t, int src,
+                            int dst, int64_t bytes, sim_ps ready)
 {
     struct arena *a = arena_create();
     struct err e;
     sim_ps arrival = 0, injected = 0, uncontended = 0;
     struct traffic q = {.nmessage = 1, .src = &src, .dst = &dst, .bytes = &bytes, .time = &ready};
-    struct traffic_result r = {.arrival = &arrival, .injected = &injected, .uncontended = &uncontended};
+    struct traffic_result r = {
+        .arrival = &arrival, .injected = &injected, .uncontended = &uncontended};
     err_clear(&e);
-    if (!traffic_run(&q, m, t, a, false, &r, &e)) fail_msg("level %d: %s", m->network.level, e.text);
+    if (!traffic_run(&q, m, t, a, false, &r, &e))
+        fail_msg("level %d: %s", m->network.level, e.text);
     assert_false(r.deadlock);
     assert_int_equal(injected, ready);
     assert_int_equal(uncontended, arrival);
@@ -46,7 +50,8 @@ static sim_ps arrival_alone(const struct machine_spec *m, const struct topology 
     return arrival;
 }
 
-static sim_ps zero_load(const struct machine_spec *m, const struct topology *t, int src, int dst, int64_t bytes)
+static sim_ps zero_load(const struct machine_spec *m, const struct topology *t, int src, int dst,
+                        int64_t bytes)
 {
     struct arena *a = arena_create();
     struct sim *s = sim_create();
@@ -90,7 +95,8 @@ static void a_message_alone_takes_the_closed_form_s_time(void **state)
         err_clear(&e);
         struct topology *t = topology_create(&m.topology, a, &e);
         assert_non_null(t);
-        for (int k = 0; k < 6; k++) check_pair(&m, t, 7 * k % t->nnode, (11 * k + t->nnode / 2) % t->nnode);
+        for (int k = 0; k < 6; k++)
+            check_pair(&m, t, 7 * k % t->nnode, (11 * k + t->nnode / 2) % t->nnode);
         check_pair(&m, t, 0, t->nnode - 1);
         arena_destroy(a);
     }
@@ -101,7 +107,8 @@ static void headers_count_with_every_packet(void **state)
     (void)state;
     struct arena *a = arena_create();
     struct topology_spec s = {
-        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {8}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {8}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     struct machine_spec m = machine(&s);
     struct err e;
     err_clear(&e);
@@ -140,10 +147,13 @@ static void the_slowest_rate_of_the_route_rules(void **state)
         m.network.level = levels[i];
         m.network.ejection_bandwidth = 0;
         m.software.gap_per_byte = 0;
-        assert_int_equal(arrival_alone(&m, t, 0, 3, 1001, 0), 4 * 3000 + 1000 * 2500 + 2000);  /* injection */
-        assert_int_equal(arrival_alone(&m, t, 0, 12, 1001, 0), 4 * 3000 + 1000 * 4000 + 2000); /* dimension 1 */
+        /* injection */
+        assert_int_equal(arrival_alone(&m, t, 0, 3, 1001, 0), 4 * 3000 + 1000 * 2500 + 2000);
+        /* dimension 1 */
+        assert_int_equal(arrival_alone(&m, t, 0, 12, 1001, 0), 4 * 3000 + 1000 * 4000 + 2000);
         m.software.gap_per_byte = 5e-9;
-        assert_int_equal(arrival_alone(&m, t, 0, 12, 1001, 0), 4 * 3000 + 1000 * 5000 + 2000); /* interface */
+        /* interface */
+        assert_int_equal(arrival_alone(&m, t, 0, 12, 1001, 0), 4 * 3000 + 1000 * 5000 + 2000);
         m.network.ejection_bandwidth = 100e6;
         assert_int_equal(arrival_alone(&m, t, 0, 12, 1001, 0), 4 * 3000 + 1000 * 10000 + 2000);
     }

@@ -1,5 +1,5 @@
-/* test_machines.c - machine files: inheritance, evidence, ranges, and that the machines that we ship meet the published
- * ping-pong times that they were made from. */
+/* test_machines.c - machine files: inheritance, evidence, ranges, and that the machines that we
+ * ship meet the published ping-pong times that they were made from. */
 #include "scratch.h"
 
 #include <math.h>
@@ -32,7 +32,8 @@ static struct machine_spec machine(const char *name, struct origin **origin, int
     struct machine_spec m;
     struct err e;
     err_clear(&e);
-    if (!plan_machine(&m, name, NULL, arena, origin, norigin, &e)) fail_msg("%s:%d: %s", e.file, e.line, e.text);
+    if (!plan_machine(&m, name, NULL, arena, origin, norigin, &e))
+        fail_msg("%s:%d: %s", e.file, e.line, e.text);
     return m;
 }
 
@@ -62,7 +63,8 @@ static void every_number_that_we_ship_has_class_and_source(void **state)
         assert_string_equal(m.name, stem[i]);
         assert_true(strlen(title[i]) > 10 && machine_spec_processors(&m) >= 4);
         for (int k = 0; k < no; k++) {
-            bool number = strchr("0123456789[", o[k].value[0]) != NULL && strcmp(o[k].key, "title") != 0;
+            bool number =
+                strchr("0123456789[", o[k].value[0]) != NULL && strcmp(o[k].key, "title") != 0;
             if (o[k].line == 0) {
                 assert_string_equal(o[k].file, "default");
                 continue;
@@ -75,7 +77,9 @@ static void every_number_that_we_ship_has_class_and_source(void **state)
 
 static double wire_flits(const struct network_spec *w, double bytes)
 {
-    double packets = w->packet_bytes > 0 && bytes > (double)w->packet_bytes ? ceil(bytes / (double)w->packet_bytes) : 1;
+    double packets = w->packet_bytes > 0 && bytes > (double)w->packet_bytes
+                         ? ceil(bytes / (double)w->packet_bytes)
+                         : 1;
     double last = bytes - (packets - 1) * (double)w->packet_bytes, flit = (double)w->flit_bytes;
     double full = ceil(((double)w->packet_bytes + (double)w->header_bytes) / flit);
     return (packets - 1) * full + fmax(1, ceil((last + (double)w->header_bytes) / flit));
@@ -83,25 +87,30 @@ static double wire_flits(const struct network_spec *w, double bytes)
 
 static double one_of(double own, double whole) { return own < 0 ? whole : own; }
 
-/* The same with segments: that which begins last at or below the size says everything, where it says it. */
-static double one_way_by_size_us(const struct machine_spec *m, int routers, double bytes, double per_byte)
+/* The same with segments: that which begins last at or below the size says everything, where it
+ * says it. */
+static double one_way_by_size_us(const struct machine_spec *m, int routers, double bytes,
+                                 double per_byte)
 {
     const struct network_spec *w = &m->network;
     const struct software_spec *s = &m->software;
     const struct software_segment *x = s->segment;
     while (x + 1 < s->segment + s->nsegment && bytes >= (double)x[1].from) x++;
     double trip = routers * w->hop_latency + w->end_latency;
-    double t = one_of(x->send_overhead, s->send_overhead) + one_of(x->recv_overhead, s->recv_overhead);
+    double t =
+        one_of(x->send_overhead, s->send_overhead) + one_of(x->recv_overhead, s->recv_overhead);
     t += bytes * (one_of(x->send_copy, s->send_copy) + one_of(x->recv_copy, s->recv_copy));
     t += trip + one_of(x->latency, 0);
     t += (wire_flits(w, bytes) - 1) * (double)w->flit_bytes *
          fmax(per_byte, one_of(x->gap_per_byte, s->gap_per_byte));
     if (x->protocol != PROTOCOL_EAGER) /* requests are of the first segment */
-        t += 2 * (trip + one_of(s->segment[0].latency, 0)) + one_of(x->rendezvous_latency, s->rendezvous_latency);
+        t += 2 * (trip + one_of(s->segment[0].latency, 0)) +
+             one_of(x->rendezvous_latency, s->rendezvous_latency);
     return t * 1e6;
 }
 
-/* One way of a message over `routers` routers in an empty machine, by the fields' definitions alone [us]. */
+/* One way of a message over `routers` routers in an empty machine, by the fields' definitions alone
+ * [us]. */
 static double one_way_us(const struct machine_spec *m, int routers, double bytes)
 {
     const struct network_spec *w = &m->network;
@@ -113,18 +122,24 @@ static double one_way_us(const struct machine_spec *m, int routers, double bytes
     bool rendezvous = s->eager_bytes >= 0 && bytes > (double)s->eager_bytes;
     if (routers > 1) per_byte = fmax(per_byte, 1 / w->link_bandwidth);
     if (s->nsegment > 0)
-        return one_way_by_size_us(m, routers, bytes, fmax(1 / fmin(in, out), routers > 1 ? 1 / w->link_bandwidth : 0));
+        return one_way_by_size_us(m, routers, bytes,
+                                  fmax(1 / fmin(in, out), routers > 1 ? 1 / w->link_bandwidth : 0));
     double trip = routers * w->hop_latency + w->end_latency;
     double t = s->send_overhead - (is_short ? s->short_saving : 0) + s->recv_overhead + trip;
     t += (wire_flits(w, bytes) - 1) * (double)w->flit_bytes * per_byte;
-    t += bytes * (s->send_copy + s->recv_copy + (is_short ? s->short_copy : rendezvous ? 0 : s->eager_copy));
+    t += bytes * (s->send_copy + s->recv_copy +
+                  (is_short     ? s->short_copy
+                   : rendezvous ? 0
+                                : s->eager_copy));
     if (rendezvous) t += 2 * trip + s->rendezvous_latency;
     if (s->kernel_server)
-        assert_true(s->kernel_time + bytes * s->kernel_per_byte <= s->send_overhead + bytes * s->send_copy);
+        assert_true(s->kernel_time + bytes * s->kernel_per_byte <=
+                    s->send_overhead + bytes * s->send_copy);
     return t * 1e6;
 }
 
-/* Published one-way times of validation.csv (P, PR) and start-up times and rates of machines.md, used to calibrate. */
+/* Published one-way times of validation.csv (P, PR) and start-up times and rates of machines.md,
+ * used to calibrate. */
 static const struct point {
     const char *machine;
     int routers;
@@ -212,7 +227,8 @@ static void machines_meet_the_points_that_they_were_made_from(void **state)
         struct machine_spec m = machine(p->machine, NULL, NULL);
         double t = one_way_us(&m, p->routers, p->bytes), error = t / p->us - 1;
         if (fabs(error) <= p->tolerance) continue;
-        print_error("%s, %.0f B: %.4g us, published %.4g us: %+.1f %%\n", p->machine, p->bytes, t, p->us, 100 * error);
+        print_error("%s, %.0f B: %.4g us, published %.4g us: %+.1f %%\n", p->machine, p->bytes, t,
+                    p->us, 100 * error);
         bad++;
     }
     assert_int_equal(bad, 0);
@@ -224,9 +240,10 @@ static void the_paper_s_machines_have_their_sizes(void **state)
     static const struct {
         const char *name;
         int processors;
-    } sizes[] = {{"t3e-300", 128},        {"t3e-300-mpich", 128}, {"paragon", 256},     {"origin2000", 16},
-                 {"origin2000-shm", 16},  {"quad-ppro", 4},       {"quad-ppro-shm", 4}, {"fugaku", 158976},
-                 {"slingshot-11", 37888}, {"cm-5", 256}};
+    } sizes[] = {{"t3e-300", 128},     {"t3e-300-mpich", 128}, {"paragon", 256},
+                 {"origin2000", 16},   {"origin2000-shm", 16}, {"quad-ppro", 4},
+                 {"quad-ppro-shm", 4}, {"fugaku", 158976},     {"slingshot-11", 37888},
+                 {"cm-5", 256}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         struct machine_spec m = machine(sizes[i].name, NULL, NULL);
         assert_int_equal(machine_spec_processors(&m), sizes[i].processors);
@@ -235,8 +252,8 @@ static void the_paper_s_machines_have_their_sizes(void **state)
 
 /* ---- files */
 
-#define SMALL                                                                                                          \
-    "schema_version: 1\ntitle: small\ntopology: {family: torus, dims: [4]}\n"                                          \
+#define SMALL                                                                                      \
+    "schema_version: 1\ntitle: small\ntopology: {family: torus, dims: [4]}\n"                      \
     "node: {flop_rate: 1 Mflop/s, clock: 1 MHz}\nnetwork:\n  link:\n    bandwidth: "
 
 static void a_variant_changes_what_it_names_and_inherits_the_rest(void **state)
@@ -250,7 +267,8 @@ static void a_variant_changes_what_it_names_and_inherits_the_rest(void **state)
     for (int i = 0; i < nbase; i++) {
         bool own = strstr(variant[i].file, "t3e-300-mpt.yaml") != NULL;
         assert_string_equal(base[i].key, variant[i].key);
-        if (!own && strcmp(base[i].key, "name") != 0) assert_string_equal(base[i].value, variant[i].value);
+        if (!own && strcmp(base[i].key, "name") != 0)
+            assert_string_equal(base[i].value, variant[i].value);
         changed += own;
     }
     assert_int_equal(changed, 10);
@@ -271,9 +289,10 @@ static void a_machine_beside_its_base_finds_it(void **state)
     (void)state;
     struct origin *o;
     int n;
-    scratch_write(&scratch, "small.yaml", SMALL "{value: 2 GB/s, class: P, min: 1 GB/s, max: 3 GB/s}\n");
-    const char *path =
-        scratch_write(&scratch, "mine.yaml", "schema_version: 1\nbase: small\nnetwork.link.bandwidth: 5 GB/s\n");
+    scratch_write(&scratch, "small.yaml",
+                  SMALL "{value: 2 GB/s, class: P, min: 1 GB/s, max: 3 GB/s}\n");
+    const char *path = scratch_write(
+        &scratch, "mine.yaml", "schema_version: 1\nbase: small\nnetwork.link.bandwidth: 5 GB/s\n");
     struct machine_spec m = machine(path, &o, &n);
     assert_true(m.network.link_bandwidth == 5e9);
     assert_string_equal(m.name, "mine");
@@ -320,20 +339,27 @@ static void wrong_machines_are_refused_with_line_and_reason(void **state)
         {SMALL "{value: 480 MB/s, min: 1 GB/s}\n", "outside its own range", 7, ERR_DATA},
         {SMALL "{value: 480 MB/s, max: [1]}\n", "'max' must be a single value", 7, ERR_DATA},
         {SMALL "{class: P}\n", "expected a value", 7, ERR_DATA},
-        {SMALL "1 GB/s\n    bandwidht: 3\n", "unknown key 'bandwidht' in 'machine.network.link'", 8, ERR_DATA},
-        {SMALL "1 GB/s\nnetwork.link.bandwidth: 1 GB/s\n", "duplicate key 'network.link.bandwidth'", 8, ERR_DATA},
-        {SMALL "1 GB/s\n  level: {value: link, min: loggp}\n", "only numbers have a range", 8, ERR_DATA},
+        {SMALL "1 GB/s\n    bandwidht: 3\n", "unknown key 'bandwidht' in 'machine.network.link'",
+         8, ERR_DATA},
+        {SMALL "1 GB/s\nnetwork.link.bandwidth: 1 GB/s\n", "duplicate key 'network.link.bandwidth'",
+         8, ERR_DATA},
+        {SMALL "1 GB/s\n  level: {value: link, min: loggp}\n", "only numbers have a range",
+         8, ERR_DATA},
         {SMALL "1 GB/s\nkernel: dynamics\n", "unknown key 'kernel'", 8, ERR_DATA},
         {SMALL "1 GB/s\nnmae: x\n", "unknown key", 8, ERR_DATA},
         {SMALL "1 GB/s\nname: [x, y]\n", "name: expected one line of text", 8, ERR_DATA},
         {SMALL "1 GB/s\nbase: nowhere\n", "base: no machine 'nowhere'", 8, ERR_NO_INPUT},
         {SMALL "1 GB/s\npublished: [a]\n", "published: expected", 8, ERR_DATA},
-        {SMALL "1 GB/s\ntopology.family: fat-tree\n", "duplicate key 'topology.family'", 8, ERR_DATA},
-        {"schema_version: 1\nbase: t3e-300\ntopology: {family: dragonfly}\n", "topology.dims has 3 numbers", 0,
+        {SMALL "1 GB/s\ntopology.family: fat-tree\n", "duplicate key 'topology.family'",
+         8, ERR_DATA},
+        {"schema_version: 1\nbase: t3e-300\ntopology: {family: dragonfly}\n",
+         "topology.dims has 3 numbers", 0,
          ERR_CONFIG},
-        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3], links: [[0, 3]]}\n",
+        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3], links: [[0, "
+         "3]]}\n",
          "names router 3; there are 3", 3, ERR_CONFIG},
-        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3]}\n", "needs topology.links", 3,
+        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3]}\n",
+         "needs topology.links", 3,
          ERR_CONFIG},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -341,7 +367,8 @@ static void wrong_machines_are_refused_with_line_and_reason(void **state)
         struct err e;
         const char *path = scratch_write(&scratch, "bad.yaml", bad[i].text);
         err_clear(&e);
-        if (plan_machine(&m, path, NULL, arena, NULL, NULL, &e)) fail_msg("accepted:\n%s", bad[i].text);
+        if (plan_machine(&m, path, NULL, arena, NULL, NULL, &e))
+            fail_msg("accepted:\n%s", bad[i].text);
         if (strstr(e.text, bad[i].expected) == NULL) fail_msg("%s\ngives: %s", bad[i].text, e.text);
         assert_int_equal(e.kind, bad[i].kind);
         if (bad[i].line != 0) assert_int_equal(e.line, bad[i].line);
@@ -373,12 +400,14 @@ static void settings_of_a_machine_come_last(void **state)
     assert_true(plan_machine(&m, "t3e-300", &o, arena, &origin, &n, &e));
     assert_true(m.network.link_bandwidth == 960e6 && m.network.level == LEVEL_LOGGP);
     assert_string_equal(origin_of(origin, n, "network.link.bandwidth")->file, "--set");
-    static const char *const wrong[] = {"kernel.solver=cr", "machine.network.link.bandwidth=1", "machine", "n=3",
+    static const char *const wrong[] = {"kernel.solver=cr", "machine.network.link.bandwidth=1",
+                                        "machine", "n=3",
                                         "machine.topology.dims=[4096, 4096, 4096]"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         o = (struct plan_options){.nset = 1, .set = &wrong[i]};
         err_clear(&e);
-        if (plan_machine(&m, "t3e-300", &o, arena, NULL, NULL, &e)) fail_msg("--set %s is accepted", wrong[i]);
+        if (plan_machine(&m, "t3e-300", &o, arena, NULL, NULL, &e))
+            fail_msg("--set %s is accepted", wrong[i]);
     }
 }
 
@@ -390,7 +419,8 @@ static void check_tells_machines_from_scenarios(void **state)
     assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300.yaml", NULL, &e));
     assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300-mpt.yaml", NULL, &e));
     assert_true(plan_check_file(MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, &e));
-    assert_false(plan_check_file(scratch_write(&scratch, "half.yaml", "schema_version: 1\ntitle: x\n"), NULL, &e));
+    assert_false(plan_check_file(
+        scratch_write(&scratch, "half.yaml", "schema_version: 1\ntitle: x\n"), NULL, &e));
     assert_non_null(strstr(e.text, "topology.family is missing"));
 }
 

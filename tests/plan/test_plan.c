@@ -1,4 +1,5 @@
-/* test_plan.c - scenarios become the runs they describe; what is wrong is refused with its place. */
+/* test_plan.c - scenarios become the runs they describe; what is wrong is refused with its
+ * place. */
 #include "scratch.h"
 
 #include "io/document.h"
@@ -55,7 +56,8 @@ static void a_path_and_a_name_mean_the_same_runs(void **state)
     struct plan a = scratch_plan("speedup-t3e", NULL, 0);
     struct plan b = scratch_plan(MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, 0);
     assert_int_equal(a.nrun, b.nrun);
-    for (int i = 0; i < a.nrun; i++) assert_string_equal(a.run[i].config_hash, b.run[i].config_hash);
+    for (int i = 0; i < a.nrun; i++)
+        assert_string_equal(a.run[i].config_hash, b.run[i].config_hash);
     plan_free(&a);
     plan_free(&b);
 }
@@ -65,13 +67,15 @@ static void layout_does_not_change_the_identity(void **state)
 {
     (void)state;
     static const char *const spelling[] = {
-        "schema_version: 1\nmachine: t3e-300\nkernel: {name: forward, solver: cr}\nranks: 4\nmodel: {n: 8}\nseed: 3\n",
-        "# other order\nschema_version: 1\nseed: 3\nn: 8\nranks: 4\nkernel:\n  solver: cr\n  name: 'forward'\n"
+        "schema_version: 1\nmachine: t3e-300\nkernel: {name: forward, solver: cr}\nranks: "
+        "4\nmodel: {n: 8}\nseed: 3\n",
+        "# other order\nschema_version: 1\nseed: 3\nn: 8\nranks: 4\nkernel:\n  solver: cr\n  name: "
+        "'forward'\n"
         "machine:\n  name: t3e-300\n",
-        "{\"schema_version\": 1, \"kernel.solver\": \"cr\", \"kernel.name\": \"forward\",\n\t\"machine.name\": "
-        "\"t3e-300\","
-        " \"ranks\": 4, \"model.n\": 8, \"seed\": 3}",
-        "schema_version: 1\nmachine: {name: t3e-300, network: {link: {bandwidth: 0.48 GB/s}}}\nkernel: forward\n"
+        "{\"schema_version\": 1, \"kernel.solver\": \"cr\", \"kernel.name\": "
+        "\"forward\",\n\t\"machine.name\": \"t3e-300\", \"ranks\": 4, \"model.n\": 8, \"seed\": 3}",
+        "schema_version: 1\nmachine: {name: t3e-300, network: {link: {bandwidth: 0.48 "
+        "GB/s}}}\nkernel: forward\n"
         "kernel.solver: cr\nranks: [4]\nsweep: {n: [8]}\nseed: 3\n",
     };
     char first[65];
@@ -113,7 +117,8 @@ static void runs_without_chance_are_made_once(void **state)
 {
     (void)state;
     const char *path = scratch_write(&scratch, "once.yaml",
-                                     "schema_version: 1\nmachine: t3e-300\nranks: n\nkernel: dynamics\nrepetitions: 5\n"
+                                     "schema_version: 1\nmachine: t3e-300\nranks: n\nkernel: "
+                                     "dynamics\nrepetitions: 5\n"
                                      "sweep: {n: [4, 8], machine.noise.compute: [0 %, 1 %]}\n");
     struct plan p = scratch_plan(path, NULL, 0);
     assert_int_equal(p.nrun, 2 * (1 + 5));
@@ -122,7 +127,8 @@ static void runs_without_chance_are_made_once(void **state)
     static const char *const quiet[] = {"machine.noise.compute=0 %"};
     p = scratch_plan(path, quiet, 1);
     for (int i = 0; i < p.nrun; i++) assert_int_equal(p.run[i].rep, 0);
-    assert_non_null(strstr(p.unused[0], "repetitions: nothing is random in these runs, so each is made once"));
+    assert_non_null(
+        strstr(p.unused[0], "repetitions: nothing is random in these runs, so each is made once"));
     plan_free(&p);
 }
 
@@ -131,7 +137,8 @@ static void only_leaves_points_out(void **state)
     (void)state;
     const char *path =
         scratch_write(&scratch, "only.yaml",
-                      "schema_version: 1\nmachine: [t3e-300]\nkernel: dynamics\nranks: [2, 8, 128, 256]\n"
+                      "schema_version: 1\nmachine: [t3e-300]\nkernel: dynamics\nranks: [2, 8, 128, "
+                      "256]\n"
                       "only: [n >= ranks, ranks <= processors]\nsweep: {n: [4, 300]}\n");
     struct plan p = scratch_plan(path, NULL, 0);
     assert_int_equal(p.nrun, 4); /* (2,4) (2,300) (8,300) (128,300) */
@@ -181,7 +188,8 @@ static void wrong_options_are_refused(void **state)
         {"n=", "not a whole number", ERR_DATA},
         {"n=[2,", "is not a list", ERR_DATA},
         {"n=[2,[3]]", "a list within a list", ERR_DATA},
-        {"machine.network.link.bandwith=1 GB/s", "did you mean 'machine.network.link.bandwidth'?", ERR_DATA},
+        {"machine.network.link.bandwith=1 GB/s",
+         "did you mean 'machine.network.link.bandwidth'?", ERR_DATA},
         {"machine.network.link.bandwidth=1 GHz", "unit of a frequency", ERR_DATA},
         {"rank=4", "did you mean 'ranks'?", ERR_DATA},
         {"zzzzzzzzzzzzzz=4", "expected ranks, seed", ERR_DATA},
@@ -190,7 +198,8 @@ static void wrong_options_are_refused(void **state)
         {"scenario=x", "unknown key", ERR_DATA},
         {"repetitions=0", "out of range", ERR_DATA},
         {"n=129", "129 ranks, but machine 't3e-300' has 128 processors", ERR_CONFIG},
-        {"machine.topology.family=fat-tree", "topology.dims has 3 numbers; its family takes 2", ERR_CONFIG},
+        {"machine.topology.family=fat-tree",
+         "topology.dims has 3 numbers; its family takes 2", ERR_CONFIG},
         {"machine.topology.dims=[1000,1000,1000]", "more than 16777216 processors", ERR_CONFIG},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -201,7 +210,8 @@ static void wrong_options_are_refused(void **state)
         if (plan_read(&p, "speedup-t3e", &o, &e)) fail_msg("--set %s is accepted", wrong[i].set);
         assert_null(p.arena);
         assert_int_equal(e.kind, wrong[i].kind);
-        if (strstr(e.text, wrong[i].expected) == NULL) fail_msg("--set %s: %s", wrong[i].set, e.text);
+        if (strstr(e.text, wrong[i].expected) == NULL)
+            fail_msg("--set %s: %s", wrong[i].set, e.text);
     }
 }
 
@@ -231,7 +241,8 @@ static const struct bad_file {
     {"schema_version: 1\nkernel: dynamics\nranks: 2\n", 1, ERR_DATA, "machine is missing"},
     {"schema_version: 1\nmachine: t3e-300\n", 1, ERR_DATA, "ranks is missing"},
     {HEAD "modle:\n  n: 4\n", 5, ERR_DATA, "unknown key 'modle'; did you mean 'model'?"},
-    {HEAD "model:\n  n: 4\n  lenght: 1 m\n", 7, ERR_DATA, "unknown key 'lenght' in 'model'; did you mean 'length'?"},
+    {HEAD "model:\n  n: 4\n  lenght: 1 m\n", 7, ERR_DATA,
+     "unknown key 'lenght' in 'model'; did you mean 'length'?"},
     {HEAD "model:\n  qqqq: 4\n", 6, ERR_DATA, "expected one of generator, n, joint"},
     {HEAD "model:\n  length: 1\n", 6, ERR_DATA, "model.length: '1': no unit; expected a length"},
     {HEAD "model:\n  length: 1 s\n", 6, ERR_DATA, "unit of a time"},
@@ -241,8 +252,10 @@ static const struct bad_file {
     {HEAD "model:\n  n: 4\n  n: 5\n", 7, ERR_DATA, "duplicate key 'n'; first given in line 6"},
     {HEAD "model:\n  n: 4\nn: 5\n", 7, ERR_DATA, "duplicate key 'model.n'; first given in line 6"},
     {HEAD "ranks: 5\n", 5, ERR_DATA, "duplicate key 'ranks'"},
-    {HEAD "sweep: {ranks: [1, 2]}\n", 5, ERR_DATA, "'ranks' is swept here and set for all runs in line 4"},
-    {HEAD "sweep:\n  n: [2, 3]\n  model.n: [4]\n", 7, ERR_DATA, "duplicate key 'model.n'; first swept in line 6"},
+    {HEAD "sweep: {ranks: [1, 2]}\n", 5, ERR_DATA,
+     "'ranks' is swept here and set for all runs in line 4"},
+    {HEAD "sweep:\n  n: [2, 3]\n  model.n: [4]\n", 7, ERR_DATA,
+     "duplicate key 'model.n'; first swept in line 6"},
     {HEAD "sweep: {n: 4}\n", 5, ERR_DATA, "needs a list"},
     {HEAD "sweep: {n: []}\n", 5, ERR_DATA, "needs a list"},
     {HEAD "sweep: [n]\n", 5, ERR_DATA, "axes such as"},
@@ -260,11 +273,15 @@ static const struct bad_file {
     {HEAD "question: [a]\n", 5, ERR_DATA, "one line of text"},
     {HEAD "n: {value: 4, class: P}\nmodel.length: {class: P}\n", 6, ERR_DATA, "expected a value"},
     {HEAD "n_over_p: 4\nn: 4\n", 5, ERR_DATA, "n_over_p determines n already"},
-    {"schema_version: 1\nmachine: t3e-300\nranks: n\nn_over_p: 2\n", 4, ERR_DATA, "needs ranks as numbers"},
+    {"schema_version: 1\nmachine: t3e-300\nranks: n\nn_over_p: 2\n", 4, ERR_DATA,
+     "needs ranks as numbers"},
     {"schema_version: 1\nmachine: nowhere\nranks: 2\n", 2, ERR_NO_INPUT, "no machine 'nowhere'"},
-    {"schema_version: 1\nmachine: ./nowhere.yaml\nranks: 2\n", 2, ERR_NO_INPUT, "no file './nowhere.yaml'"},
-    {"schema_version: 1\nmachine: t3e-300\nranks: 129\n", 3, ERR_CONFIG, "enlarge machine.topology.dims"},
-    {"schema_version: 1\nmachine: t3e-300\nranks: n\nsweep:\n  n: [300, 200]\n", 5, ERR_CONFIG, "300 ranks"},
+    {"schema_version: 1\nmachine: ./nowhere.yaml\nranks: 2\n", 2, ERR_NO_INPUT,
+     "no file './nowhere.yaml'"},
+    {"schema_version: 1\nmachine: t3e-300\nranks: 129\n", 3, ERR_CONFIG,
+     "enlarge machine.topology.dims"},
+    {"schema_version: 1\nmachine: t3e-300\nranks: n\nsweep:\n  n: [300, 200]\n", 5, ERR_CONFIG,
+     "300 ranks"},
     {HEAD "only: n >= ranks\nn: 2\n", 0, ERR_CONFIG, "'only' excludes all runs"},
     {HEAD "model: {generator: urdf}\n", 0, ERR_DATA, "model.path is missing"},
     {HEAD "model: {generator: urdf, path: nowhere.urdf}\n", 0, ERR_NO_INPUT, "cannot open"},
@@ -336,10 +353,10 @@ static void deep_and_large_files_are_refused(void **state)
 static void settings_that_do_not_act_are_reported(void **state)
 {
     (void)state;
-    const char *path =
-        scratch_write(&scratch, "idle.yaml",
-                      HEAD "model: {n: 8, branch: 3, mass_ratio: 10}\nmachine.noise.background.message: 64 B\n"
-                           "sweep: {kernel.solver: [cr, pcr], kernel.hybrid_levels: [2, 3]}\n");
+    const char *path = scratch_write(
+        &scratch, "idle.yaml",
+        HEAD "model: {n: 8, branch: 3, mass_ratio: 10}\nmachine.noise.background.message: 64 B\n"
+             "sweep: {kernel.solver: [cr, pcr], kernel.hybrid_levels: [2, 3]}\n");
     const char *const set[] = {"kernel.repeat=4", "machine.network.buffer=20", "level=loggp"};
     static const char *const expected[] = {
         "model.branch: ",         "model.mass_ratio: ", "machine.noise.background.message: ",
@@ -349,7 +366,8 @@ static void settings_that_do_not_act_are_reported(void **state)
     assert_int_equal(p.nunused, 6);
     for (int i = 0; i < 6; i++) assert_ptr_equal(strstr(p.unused[i], expected[i]), p.unused[i]);
     plan_free(&p);
-    const char *const acting[] = {"kernel.solver=cr-pcr", "machine.noise.background.load=10 %", "level=link"};
+    const char *const acting[] = {"kernel.solver=cr-pcr", "machine.noise.background.load=10 %",
+                                  "level=link"};
     p = scratch_plan(path, acting, 3);
     assert_int_equal(p.nunused, 2); /* branch and mass_ratio */
     plan_free(&p);

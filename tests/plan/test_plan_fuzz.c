@@ -1,5 +1,5 @@
-/* test_plan_fuzz.c - seeded: damaged files never do worse than be refused; no setting is silently without effect.
- */
+/* test_plan_fuzz.c - seeded: damaged files never do worse than be refused; no setting is silently
+ * without effect. */
 #include "scratch.h"
 
 #include <math.h>
@@ -82,7 +82,8 @@ static void damage(struct text *t, struct random *r)
     if (how == 1) text_add_bytes(&out, token, strlen(token)), at += n; /* replace */
     if (how == 2) at += n;                                             /* delete */
     if (how == 3) text_add_bytes(&out, t->s + at, n);                  /* repeat */
-    if (how == 4 && rest > 0) text_add(&out, "%c", (char)(t->s[at] ^ (1 << random_below(r, 7)))), at++;
+    if (how == 4 && rest > 0)
+        text_add(&out, "%c", (char)(t->s[at] ^ (1 << random_below(r, 7)))), at++;
     if (how == 5) at = random_below(r, 20) == 0 ? t->length : at; /* cut off, seldom */
     text_add_bytes(&out, t->s + at, t->length - at);
     text_free(t);
@@ -112,7 +113,8 @@ static void check_plan(const struct plan *p)
 static void check_refusal(const struct err *e)
 {
     bool expected = e->kind == ERR_DATA || e->kind == ERR_CONFIG || e->kind == ERR_NO_INPUT;
-    if (!expected || e->text[0] == '\0') fail_msg("refused with kind %d, text '%s'", (int)e->kind, e->text);
+    if (!expected || e->text[0] == '\0')
+        fail_msg("refused with kind %d, text '%s'", (int)e->kind, e->text);
 }
 
 static void survive(const char *source, bool machine, uint64_t stream, int rounds)
@@ -134,7 +136,8 @@ static void survive(const char *source, bool machine, uint64_t stream, int round
         struct plan p = {0};
         struct machine_spec m;
         err_clear(&e);
-        bool fine = machine ? plan_machine(&m, path, NULL, a, NULL, NULL, &e) : plan_read(&p, path, NULL, &e);
+        bool fine = machine ? plan_machine(&m, path, NULL, a, NULL, NULL, &e)
+                            : plan_read(&p, path, NULL, &e);
         if (!fine) check_refusal(&e);
         else if (!machine) check_plan(&p);
         else assert_true(machine_spec_processors(&m) >= 1);
@@ -190,7 +193,8 @@ static bool is_reported(const struct plan *p, const char *key)
     return false;
 }
 
-/* A valid value of f other than the one it has in `run`; false when the machine would no longer fit together. */
+/* A valid value of f other than the one it has in `run`; false when the machine would no longer fit
+ * together. */
 static bool other_value(const struct field *f, const char *full, const void *base, struct text *out)
 {
     double v;
@@ -202,7 +206,9 @@ static bool other_value(const struct field *f, const char *full, const void *bas
         units_print(v > f->max ? f->max / 3 : v, f->unit, quantity, (int)sizeof quantity);
         return text_add(out, "%s", quantity), true;
     case FIELD_INT:
-        return text_add(out, "%d", *(const int *)(const void *)((const char *)base + f->offset) + 1), true;
+        return text_add(out, "%d",
+                        *(const int *)(const void *)((const char *)base + f->offset) + 1),
+               true;
     case FIELD_INT64:
         return text_add(out, "%d B", 24), true;
     case FIELD_SEED:
@@ -237,8 +243,10 @@ static bool other_value(const struct field *f, const char *full, const void *bas
     return false;
 }
 
-/* Sets one key of the scene: the identity has to change, and if the key cannot act it has to be in the report. */
-static void try_key(const char *scene, const struct field_table *t, const struct field *f, const struct plan *before)
+/* Sets one key of the scene: the identity has to change, and if the key cannot act it has to be in
+ * the report. */
+static void try_key(const char *scene, const struct field_table *t, const struct field *f,
+                    const struct plan *before)
 {
     char full[128];
     struct text set = {0}, value = {0};
@@ -251,12 +259,14 @@ static void try_key(const char *scene, const struct field_table *t, const struct
     struct plan_options o = {.nset = 1, .set = (const char *const *)&set.s};
     err_clear(&e);
     if (usable && plan_read(&p, scene, &o, &e)) {
-        if (strcmp(p.run[0].config_hash, before->run[0].config_hash) == 0) fail_msg("%s is lost", set.s);
+        if (strcmp(p.run[0].config_hash, before->run[0].config_hash) == 0)
+            fail_msg("%s is lost", set.s);
         bool idle = f->idle != NULL;
         for (int i = 0; i < p.nrun && idle; i++) idle = f->idle(&p.run[i]) != NULL;
         if (idle != is_reported(&p, full)) fail_msg("%s: idle %d, reported %d", set.s, idle, !idle);
         plan_free(&p);
-    } else if (usable && e.kind != ERR_CONFIG && e.kind != ERR_NO_INPUT && strcmp(full, "model.generator") != 0) {
+    } else if (usable && e.kind != ERR_CONFIG && e.kind != ERR_NO_INPUT &&
+               strcmp(full, "model.generator") != 0) {
         fail_msg("%s: %s", set.s, e.text);
     }
     text_free(&set);
@@ -268,11 +278,13 @@ static void every_key_changes_the_identity_and_idle_keys_are_reported(void **sta
     (void)state;
     static const char *const scenes[] = {
         "schema_version: 1\nmachine: t3e-300\nkernel: dynamics\nranks: 4\nn: 8\n",
-        "schema_version: 1\nmachine: {name: origin2000, network.level: loggp}\nkernel: inverse\nranks: 4\nn: 8\n"
+        "schema_version: 1\nmachine: {name: origin2000, network.level: loggp}\nkernel: "
+        "inverse\nranks: 4\nn: 8\n"
         "model: {inertia: random, base: moving, generator: comb}\n",
         "schema_version: 1\nkernel: {name: shift, message: 64 B}\nranks: 4\n"
         "machine: {name: aries, topology.routing: valiant}\n",
-        "schema_version: 1\nmachine: {name: t3e-300, placement: {kind: random}, noise: {background: {load: 5 %}}}\n"
+        "schema_version: 1\nmachine: {name: t3e-300, placement: {kind: random}, noise: "
+        "{background: {load: 5 %}}}\n"
         "kernel: {name: dynamics, solver: cr-pcr, steps: 3}\nranks: 4\n",
     };
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
@@ -282,7 +294,8 @@ static void every_key_changes_the_identity_and_idle_keys_are_reported(void **sta
         struct plan before = scratch_plan(path, NULL, 0);
         const struct field_table *const *table = field_tables(&ntable);
         for (int k = 0; k < ntable; k++)
-            for (int j = 0; j < table[k]->nfield; j++) try_key(path, table[k], &table[k]->field[j], &before);
+            for (int j = 0; j < table[k]->nfield; j++)
+                try_key(path, table[k], &table[k]->field[j], &before);
         plan_free(&before);
     }
 }

@@ -1,4 +1,5 @@
-/* test_figure.c - figures come out of the database alone, the same bytes each time, and fail with a reason. */
+/* test_figure.c - figures come out of the database alone, the same bytes each time, and fail with a
+ * reason. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,12 +33,14 @@ static void write_file(struct fixture *f, const char *name, const char *text)
     fclose(out);
 }
 
-static const char *const points = "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 ORDER BY P;\n";
+static const char *const points =
+    "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 ORDER BY P;\n";
 static const char *const script =
     "set encoding utf8\n"
     "do for [format in \"png svg\"] {\n"
     "set terminal (format eq 'png' ? 'pngcairo' : 'svg'); set output figure.'.'.format\n"
-    "set title 'A curve' font ',20'; plot figure.'.csv' using 'P':'speedup' with linespoints; unset output }\n";
+    "set title 'A curve' font ',20'; plot figure.'.csv' using 'P':'speedup' with linespoints; "
+    "unset output }\n";
 
 static int make_fixture(void **state)
 {
@@ -81,7 +84,8 @@ static struct text read_out(struct fixture *f, const char *name)
     char path[256];
     struct text t = {0};
     struct err e = {0};
-    if (!text_read_file(&t, scratch_path(path, sizeof path, f->out, name), &e)) fail_msg("%s", e.text);
+    if (!text_read_file(&t, scratch_path(path, sizeof path, f->out, name), &e))
+        fail_msg("%s", e.text);
     return t;
 }
 
@@ -117,7 +121,8 @@ static void a_figure_is_four_files(void **state)
 {
     struct fixture *f = *state;
     draw(f, f->folder, "curve");
-    struct text png = read_out(f, "curve.png"), svg = read_out(f, "curve.svg"), csv = read_out(f, "curve.csv");
+    struct text png = read_out(f, "curve.png"), svg = read_out(f, "curve.svg"),
+                csv = read_out(f, "curve.csv");
     assert_memory_equal(png.s, "\x89PNG", 4);
     assert_non_null(strstr(svg.s, "</svg>"));
     assert_memory_equal(csv.s, "run_id,P,speedup\r\n", 18);
@@ -153,8 +158,10 @@ static void the_script_redraws_without_this_program(void **state)
     struct text first = read_out(f, "curve.svg"), command = {0};
     text_add(&command, "cd '%s' && rm curve.svg && gnuplot -d curve.gp", f->out);
     assert_int_equal(system(command.s), 0);
-    struct text again = read_out(f, "curve.svg"); /* gnuplot's own: without what this program makes of it */
-    assert_true(strstr(first.s, "<title>A curve</title>") && strstr(again.s, "<title>Gnuplot</title>"));
+    struct text again =
+        read_out(f, "curve.svg"); /* gnuplot's own: without what this program makes of it */
+    assert_true(strstr(first.s, "<title>A curve</title>") &&
+                strstr(again.s, "<title>Gnuplot</title>"));
     text_free(&first);
     text_free(&again);
     text_free(&command);
@@ -206,7 +213,8 @@ static void a_program_that_misbehaves_is_told_as_such(void **state)
     } bad[] = {
         {"exit 0", "has ended without a picture", ERR_UNAVAILABLE},
         {": >curve.svg; : >curve.png", "curve.png was not drawn to its end", ERR_IO},
-        {"echo '<svg></svg>' >curve.svg; echo '\\0211PNG' >curve.png", "curve.png was not drawn to its end", ERR_IO},
+        {"echo '<svg></svg>' >curve.svg; echo '\\0211PNG' >curve.png",
+         "curve.png was not drawn to its end", ERR_IO},
         {"echo '<svg><g></g>' >curve.svg", "curve.svg was not drawn to its end", ERR_IO},
         {"kill -9 $$", "was ended by signal 9", ERR_UNAVAILABLE},
         {"exec sleep 100", "had not drawn", ERR_UNAVAILABLE},
@@ -223,8 +231,10 @@ static void a_program_that_misbehaves_is_told_as_such(void **state)
             setenv("MIMDSIM_GNUPLOT_SECONDS", "60", 1);
         else setenv("MIMDSIM_GNUPLOT_SECONDS", "0.3", 1);
         use_program(f, bad[i].line);
-        if (report_figure(f->s, f->folder, "curve", f->out, &f->e)) fail_msg("%s: taken for a drawing", bad[i].line);
-        if (f->e.kind != bad[i].kind || !strstr(f->e.text, bad[i].says)) fail_msg("%s: %s", bad[i].line, f->e.text);
+        if (report_figure(f->s, f->folder, "curve", f->out, &f->e))
+            fail_msg("%s: taken for a drawing", bad[i].line);
+        if (f->e.kind != bad[i].kind || !strstr(f->e.text, bad[i].says))
+            fail_msg("%s: %s", bad[i].line, f->e.text);
         assert_false(exists(f, "curve.png") || exists(f, "curve.svg"));
         assert_true(exists(f, "curve.csv") && exists(f, "curve.gp"));
     }
@@ -240,7 +250,8 @@ static void several_tables_become_several_files(void **state)
     struct fixture *f = *state;
     struct text sql = {0};
     text_add(&sql,
-             "-- needs: x\n%s-- table: stages\nSELECT name FROM v_stage WHERE P = 2 ORDER BY run_id, stage;\n"
+             "-- needs: x\n%s-- table: stages\nSELECT name FROM v_stage WHERE P = 2 ORDER BY "
+             "run_id, stage;\n"
              "-- table: none\nSELECT 1 AS x WHERE 0;\n",
              points);
     write_file(f, "plots/curve.sql", sql.s);
@@ -259,9 +270,8 @@ static void cells_are_quoted_where_rfc_4180_says_so(void **state)
 {
     struct fixture *f = *state;
     write_file(f, "plots/curve.sql",
-               "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, "
-               "1e300*10 AS big, "
-               "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
+               "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, 1e300*10 AS "
+               "big, 'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
     use_program(f, "echo '<svg></svg>' >curve.svg");
     assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
     struct text csv = read_out(f, "curve.csv");
@@ -287,7 +297,8 @@ static void an_unknown_figure_names_the_nearest(void **state)
 static void a_figure_without_rows_says_what_to_run(void **state)
 {
     struct fixture *f = *state;
-    write_file(f, "plots/curve.sql", "-- About nothing.\n-- needs: mimdsim run x.yaml\nSELECT 1 AS x WHERE 0;\n");
+    write_file(f, "plots/curve.sql",
+               "-- About nothing.\n-- needs: mimdsim run x.yaml\nSELECT 1 AS x WHERE 0;\n");
     assert_false(report_figure(f->s, f->folder, "curve", f->out, &f->e));
     assert_int_equal(f->e.kind, ERR_NO_INPUT);
     assert_non_null(strstr(f->e.text, "first: mimdsim run x.yaml"));
@@ -298,8 +309,10 @@ static void a_figure_of_several_rows_is_drawn_for_each_or_for_one(void **state)
     struct fixture *f = *state;
     struct report_drawings d;
     write_file(f, "plots/curve.sql",
-               "-- each: SELECT DISTINCT level, 'curve-' || level FROM run ORDER BY 1\n-- needs: mimdsim run x.yaml\n"
-               "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 AND level = ?1 ORDER BY P;\n");
+               "-- each: SELECT DISTINCT level, 'curve-' || level FROM run ORDER BY 1\n-- needs: "
+               "mimdsim run x.yaml\n"
+               "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 AND level = ?1 "
+               "ORDER BY P;\n");
     draw(f, f->folder, "curve-loggp");
     assert_true(exists(f, "curve-loggp.svg"));
     assert_false(exists(f, "curve-link.csv"));
@@ -336,10 +349,12 @@ static void a_folder_that_cannot_be_made_is_said(void **state)
     struct fixture *f = *state;
     char path[256];
     write_file(f, "file", "x");
-    assert_false(report_figure(f->s, f->folder, "curve", scratch_path(path, sizeof path, f->folder, "file/x"), &f->e));
+    assert_false(report_figure(f->s, f->folder, "curve",
+                               scratch_path(path, sizeof path, f->folder, "file/x"), &f->e));
     assert_int_equal(f->e.kind, ERR_CREATE);
     err_clear(&f->e);
-    assert_false(report_figure(f->s, f->folder, "curve", scratch_path(path, sizeof path, f->folder, "file"), &f->e));
+    assert_false(report_figure(f->s, f->folder, "curve",
+                               scratch_path(path, sizeof path, f->folder, "file"), &f->e));
     assert_int_equal(f->e.kind, ERR_CREATE);
 }
 
@@ -380,15 +395,20 @@ static void put_machines(struct fixture *f)
 static void put_tables(struct fixture *f)
 {
     static const char *const ladder[] = {
-        "scenario", "ladder", "at", "method", "rung", "ordinal", "quantity", "reference", "relative_error", "host_s",
+        "scenario", "ladder", "at", "method", "rung", "ordinal", "quantity", "reference",
+        "relative_error", "host_s",
         "machine_ps", "status", "family", "text"};
-    static const char *const case_[] = {"suite", "subject", "algorithm", "precision", "ordinal", "status",
-                                        "relative_error", "reason"};
-    static const char *const left_out[] = {"scenario", "what", "ordinal", "why", "class", "at", "host_s",
-                                           "host_saved_s", "host_noise_s", "machine_ps", "machine_saved_ps"};
-    static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
+    static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
+                                        "ordinal", "status",  "relative_error", "reason"};
+    static const char *const left_out[] = {
+        "scenario", "what",         "ordinal",      "why",        "class",           "at",
+        "host_s",   "host_saved_s", "host_noise_s", "machine_ps", "machine_saved_ps"};
+    static const char *const claim[] = {"id",   "variant", "statement", "test",
+                                        "unit", "share",   "verdict"};
     for (int i = 0; i < 2; i++) {
-        const struct store_value rung[] = {store_text("made"), store_text("network"), store_text("P=4"),
+        const struct store_value rung[] = {store_text("made"),
+                                           store_text("network"),
+                                           store_text("P=4"),
                                            store_text(i ? "link" : "loggp"),
                                            store_text("x"),
                                            store_int(i),
@@ -400,26 +420,38 @@ static void put_tables(struct fixture *f)
                                            store_text(i ? "ok" : "failed"),
                                            store_text("made"),
                                            store_text("")};
-        const struct store_value row[] = {
-            store_text("made"), store_text("heavy tip"), store_text(i ? "aba" : "cfa"), store_text("double"),
-            store_int(i), store_text(i ? "ok" : "failed"), i ? store_real(0) : store_null(), store_text("")};
+        const struct store_value row[] = {store_text("made"),
+                                          store_text("heavy tip"),
+                                          store_text(i ? "aba" : "cfa"),
+                                          store_text("double"),
+                                          store_int(i),
+                                          store_text(i ? "ok" : "failed"),
+                                          i ? store_real(0) : store_null(),
+                                          store_text("")};
         const struct store_value held[] = {
             store_text(i ? "C1" : "C10"),   store_text(""), store_text("it rises, sharply"),
             store_text("S(24) > S(16)"),    store_text(""), i ? store_real(0.5) : store_null(),
             store_text(i ? "pass" : "fail")};
         assert_true(store_insert(f->s, "ladder", 14, ladder, rung, &f->e));
         assert_true(store_insert(f->s, "stability", 8, case_, row, &f->e));
-        const struct store_value out[] = {
-            store_text("made"), store_text(i ? "timeline" : "branches"), store_int(i), store_text("nobody asks, ever"),
-            store_text("exact"), store_text("P=4"), i ? store_real(0.1) : store_null(),
-            i ? store_real(0.02) : store_null(), i ? store_real(0.01) : store_null(), i ? store_int(7) : store_null(),
-            i ? store_int(0) : store_null()};
+        const struct store_value out[] = {store_text("made"),
+                                          store_text(i ? "timeline" : "branches"),
+                                          store_int(i),
+                                          store_text("nobody asks, ever"),
+                                          store_text("exact"),
+                                          store_text("P=4"),
+                                          i ? store_real(0.1) : store_null(),
+                                          i ? store_real(0.02) : store_null(),
+                                          i ? store_real(0.01) : store_null(),
+                                          i ? store_int(7) : store_null(),
+                                          i ? store_int(0) : store_null()};
         assert_true(store_insert(f->s, "omission", 11, left_out, out, &f->e));
         assert_true(store_insert(f->s, "claim", 7, claim, held, &f->e));
     }
 }
 
-/* The figures that the program ships, drawn from made data: gnuplot has nothing to complain about. */
+/* The figures that the program ships, drawn from made data: gnuplot has nothing to complain
+ * about. */
 static void every_shipped_figure_can_be_drawn(void **state)
 {
     struct fixture *f = *state;
@@ -431,12 +463,12 @@ static void every_shipped_figure_can_be_drawn(void **state)
     for (int i = 0; i < n; i++) {
         struct report_drawings drawings;
         char svg[160];
-        /* made runs have no loads of links, measured nothing, explain no claim (explain.bats draws that) and are of no
-         * program of one's own (examples.bats); their paths were not looked for (why.bats),
-         * nothing was drawn from ranges (studies.bats) */
+        /* made runs have no loads of links, measured nothing, explain no claim (explain.bats draws
+         * that) and are of no program of one's own (examples.bats); their paths were not looked for
+         * (why.bats), nothing was drawn from ranges (studies.bats) */
         if (strncmp(name[i], "link", 4) != 0 && strcmp(name[i], "pingpong") != 0 &&
-            strcmp(name[i], "explain") != 0 && strcmp(name[i], "speedup") != 0 && strcmp(name[i], "why") != 0 &&
-            strcmp(name[i], "uncertainty") != 0) {
+            strcmp(name[i], "explain") != 0 && strcmp(name[i], "speedup") != 0 &&
+            strcmp(name[i], "why") != 0 && strcmp(name[i], "uncertainty") != 0) {
             draw(f, MIMDSIM_SRCDIR, name[i]);
             assert_true(report_drawings_find(f->s, MIMDSIM_SRCDIR, name[i], &drawings, &f->e));
             for (int k = 0; k < drawings.n; k++) {
@@ -453,7 +485,8 @@ static void every_shipped_figure_can_be_drawn(void **state)
     }
     free(name);
     struct text csv = read_out(f, "fig6.csv");
-    assert_non_null(strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel_fraction"));
+    assert_non_null(
+        strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel_fraction"));
     text_free(&csv);
 }
 
@@ -461,11 +494,13 @@ static void every_shipped_figure_says_what_to_run_first(void **state)
 {
     struct fixture *f = *state;
     char path[256], **name;
-    struct store *empty = store_open(scratch_path(path, sizeof path, f->folder, "empty.db"), STORE_WRITE, &f->e);
+    struct store *empty =
+        store_open(scratch_path(path, sizeof path, f->folder, "empty.db"), STORE_WRITE, &f->e);
     int n = report_figures(MIMDSIM_SRCDIR, &name);
     for (int i = 0; i < n; i++) {
         assert_false(report_figure(empty, MIMDSIM_SRCDIR, name[i], f->out, &f->e));
-        if (f->e.kind != ERR_NO_INPUT || strstr(f->e.text, "first: mimdsim ") == NULL) fail_msg("%s", f->e.text);
+        if (f->e.kind != ERR_NO_INPUT || strstr(f->e.text, "first: mimdsim ") == NULL)
+            fail_msg("%s", f->e.text);
         err_clear(&f->e);
         free(name[i]);
     }

@@ -59,8 +59,8 @@ static void expect(struct fixture *f, const char *sql, bool json, const char *te
 static void columns_are_aligned_numbers_to_the_right(void **state)
 {
     expect(*state,
-           "SELECT 'a' AS name, 7 AS count, 0.5 AS share UNION ALL SELECT 'longer', 1234, NULL UNION ALL "
-           "SELECT 'gr\xc3\xbc\xc3\x9f', 1, 1e-9",
+           "SELECT 'a' AS name, 7 AS count, 0.5 AS share UNION ALL SELECT 'longer', 1234, NULL "
+           "UNION ALL SELECT 'gr\xc3\xbc\xc3\x9f', 1, 1e-9",
            false,
            "name    count  share\n"
            "a           7    0.5\n"
@@ -76,7 +76,8 @@ static void no_rows_still_show_their_columns(void **state)
 
 static void control_characters_do_not_reach_the_terminal(void **state)
 {
-    expect(*state, "SELECT 'x' || char(27) || '[2J' || char(10) || 'y' AS t", false, "t\nx [2J y\n");
+    expect(*state, "SELECT 'x' || char(27) || '[2J' || char(10) || 'y' AS t", false,
+           "t\nx [2J y\n");
 }
 
 static void json_keeps_kinds(void **state)

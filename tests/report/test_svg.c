@@ -1,4 +1,5 @@
-/* test_svg.c - pictures come out as shapes and texts, with a title and tooltips, and with nothing that runs. */
+/* test_svg.c - pictures come out as shapes and texts, with a title and tooltips, and with nothing
+ * that runs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,10 +18,12 @@
 static const char drawn[] =
     "<?xml version=\"1.0\" encoding=\"utf-8\"  standalone=\"no\"?>\n"
     "<svg width=\"400\" height=\"300\" viewBox=\"0 0 400 300\" xmlns=\"http://www.w3.org/2000/svg\""
-    " xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>Gnuplot</title>\n<desc>Produced by GNUPLOT</desc>\n"
+    " xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>Gnuplot</title>\n<desc>Produced by "
+    "GNUPLOT</desc>\n"
     "<defs><circle id='gpDot' r='0.5'/><use xlink:href='#gpDot' id='gpPt6'/></defs>\n"
     "<g font-size=\"11.00\"><text>small</text></g>\n"
-    "<g id=\"gnuplot_plot_1\" ><title>over &lt;b&gt; &amp; c</title><path stroke='rgb(1,2,3)' d='M1,2 L3,4'/></g>\n"
+    "<g id=\"gnuplot_plot_1\" ><title>over &lt;b&gt; &amp; c</title><path stroke='rgb(1,2,3)' "
+    "d='M1,2 L3,4'/></g>\n"
     "<g id=\"gnuplot_plot_2\" ><title>gnuplot_plot_2</title>\n"
     "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'P = 4: it&apos;s 2 &lt; 3')\""
     " onmouseout=\"gnuplot_svg.hideHypertext()\"><title> </title>\n"
@@ -104,19 +107,27 @@ static void identifiers_get_a_prefix_and_references_follow(void **state)
 static void what_draws_nothing_is_left_out(void **state)
 {
     static const char *const bad[] = {
-        "<script>alert(1)</script>", "<foreignObject><p>x</p></foreignObject>", "<style>*{}</style>",
-        "<a xlink:href='javascript:alert(1)'><text>x</text></a>", "<image xlink:href='http://a/b'/>",
+        "<script>alert(1)</script>", "<foreignObject><p>x</p></foreignObject>",
+        "<style>*{}</style>",
+        "<a xlink:href='javascript:alert(1)'><text>x</text></a>",
+        "<image xlink:href='http://a/b'/>",
         "<iframe src='x'/>", "<animate attributeName='href'/>", "<set attributeName='onclick'/>",
-        "<g onclick='alert(1)'/>", "<path d='M0,0' onload='alert(1)'/>", "<use xlink:href='http://a#b'/>",
-        "<use href='data:text/xml,a'/>", "<rect style='background:u'/>", "<rect fill='url(http://a)'/>",
+        "<g onclick='alert(1)'/>", "<path d='M0,0' onload='alert(1)'/>",
+        "<use xlink:href='http://a#b'/>",
+        "<use href='data:text/xml,a'/>", "<rect style='background:u'/>",
+        "<rect fill='url(http://a)'/>",
         "<rect class='c'/>", "<text xml:base='http://a'>y</text>"};
-    static const char *const sign[] = {"alert", "foreign", "style", "javascript", "http://a", "iframe", "animate",
-                                       "<set", "onclick", "onload", "data:", "url(", "class", "base"};
+    static const char *const sign[] = {"alert",  "foreign", "style", "javascript", "http://a",
+                                       "iframe", "animate", "<set",  "onclick",    "onload",
+                                       "data:",  "url(",    "class", "base"};
     (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct text t = {0};
         struct err e;
-        text_add(&t, "<svg xmlns:xlink=\"http://www.w3.org/1999/xlink\"><g>%s<text>kept</text></g></svg>", bad[i]);
+        text_add(
+            &t,
+            "<svg xmlns:xlink=\"http://www.w3.org/1999/xlink\"><g>%s<text>kept</text></g></svg>",
+            bad[i]);
         char *svg = clean(t.s, "p-", &e);
         has(svg, "<text>kept</text>");
         for (size_t k = 0; k < sizeof sign / sizeof *sign; k++) lacks(svg, sign[k]);

@@ -1,4 +1,5 @@
-/* test_trace.c - timelines that other programs open: nested slices, matched messages, order of time, limits. */
+/* test_trace.c - timelines that other programs open: nested slices, matched messages, order of
+ * time, limits. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -70,10 +71,11 @@ static int64_t ask(struct fixture *f, const char *sql)
     sqlite3_stmt *q;
     assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
     assert_int_equal(sqlite3_prepare_v2(db,
-                                        "CREATE TABLE event AS SELECT value ->> 'ph' AS ph, value ->> 'tid' AS tid, "
-                                        "value ->> 'name' AS name, value ->> 'cat' AS cat, value ->> 'ts' AS ts, "
-                                        "value ->> 'dur' AS dur, value ->> 'id' AS id "
-                                        "FROM json_each(json_extract(?1, '$.traceEvents'))",
+                                        "CREATE TABLE event AS SELECT value ->> 'ph' AS ph, value "
+                                        "->> 'tid' AS tid, value ->> 'name' AS name, value ->> "
+                                        "'cat' AS cat, value ->> 'ts' AS ts, value ->> 'dur' AS "
+                                        "dur, value ->> 'id' AS id FROM json_each(json_extract(?1, "
+                                        "'$.traceEvents'))",
                                         -1, &q, NULL),
                      SQLITE_OK);
     sqlite3_bind_text(q, 1, f->text, -1, SQLITE_STATIC);
@@ -91,33 +93,40 @@ static void chrome_slices_nest_and_carry_their_times(void **state)
 {
     struct fixture *f = *state;
     trace(f, TRACE_CHROME);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat = 'stage'"), NRANK * 7);
+    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat = 'stage'"),
+                     NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat <> 'stage'"), NSPAN);
     /* every slice lies within one of its stage, none overlaps its neighbour */
-    assert_int_equal(ask(f, "SELECT count(*) FROM event x WHERE ph = 'X' AND cat <> 'stage' AND 1 <> (SELECT count(*) "
-                            "FROM event y WHERE y.cat = 'stage' AND y.tid = x.tid AND y.ts <= x.ts + 1e-9 AND "
-                            "x.ts + x.dur <= y.ts + y.dur + 1e-6 AND y.ts + y.dur > x.ts + 1e-9)"),
+    assert_int_equal(ask(f, "SELECT count(*) FROM event x WHERE ph = 'X' AND cat <> 'stage' AND 1 "
+                            "<> (SELECT count(*) FROM event y WHERE y.cat = 'stage' AND y.tid = "
+                            "x.tid AND y.ts <= x.ts + 1e-9 AND x.ts + x.dur <= y.ts + y.dur + 1e-6 "
+                            "AND y.ts + y.dur > x.ts + 1e-9)"),
                      0);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event x JOIN event y ON x.tid = y.tid AND x.cat <> 'stage' AND "
-                            "y.cat <> 'stage' AND x.ph = 'X' AND y.ph = 'X' AND x.ts < y.ts AND "
-                            "x.ts + x.dur > y.ts + 1e-6"),
-                     0);
-    assert_int_equal(ask(f, "SELECT round(1e6 * max(ts + dur)) FROM event WHERE ph = 'X'"), f->r.makespan_ps / 7 * 7);
+    assert_int_equal(
+        ask(f,
+            "SELECT count(*) FROM event x JOIN event y ON x.tid = y.tid AND x.cat <> 'stage' AND "
+            "y.cat <> 'stage' AND x.ph = 'X' AND y.ph = 'X' AND x.ts < y.ts AND x.ts + x.dur > "
+            "y.ts + 1e-6"),
+        0);
+    assert_int_equal(ask(f, "SELECT round(1e6 * max(ts + dur)) FROM event WHERE ph = 'X'"),
+                     f->r.makespan_ps / 7 * 7);
 }
 
 static void chrome_flows_are_matched_and_bound_to_slices(void **state)
 {
     struct fixture *f = *state;
     trace(f, TRACE_CHROME);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event s JOIN event r ON s.ph = 's' AND r.ph = 'f' AND s.id = r.id "
-                            "AND s.tid <> r.tid AND s.ts <= r.ts"),
+    assert_int_equal(ask(f, "SELECT count(*) FROM event s JOIN event r ON s.ph = 's' AND r.ph = "
+                            "'f' AND s.id = r.id AND s.tid <> r.tid AND s.ts <= r.ts"),
                      NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph IN ('s', 'f')"), 2 * NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(DISTINCT id) FROM event WHERE ph = 's'"), NRANK * 7);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event s WHERE s.ph = 's' AND NOT EXISTS (SELECT 1 FROM event x WHERE "
-                            "x.ph = 'X' AND x.name = 'send' AND x.tid = s.tid AND x.ts = s.ts)"),
+    assert_int_equal(ask(f, "SELECT count(*) FROM event s WHERE s.ph = 's' AND NOT EXISTS (SELECT "
+                            "1 FROM event x WHERE x.ph = 'X' AND x.name = 'send' AND x.tid = s.tid "
+                            "AND x.ts = s.ts)"),
                      0);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'M' AND name = 'thread_name'"), NRANK);
+    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'M' AND name = 'thread_name'"),
+                     NRANK);
 }
 
 static void a_limit_leaves_out_the_latest_and_no_flow_is_torn(void **state)
@@ -129,7 +138,8 @@ static void a_limit_leaves_out_the_latest_and_no_flow_is_torn(void **state)
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat <> 'stage'"), 50);
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 's'"),
                      ask(f, "SELECT count(*) FROM event WHERE ph = 'f'"));
-    assert_int_equal(ask(f, "SELECT count(*) FROM event s JOIN event r ON s.ph = 's' AND r.ph = 'f' AND s.id = r.id"),
+    assert_int_equal(ask(f, "SELECT count(*) FROM event s JOIN event r ON s.ph = 's' AND r.ph = "
+                            "'f' AND s.id = r.id"),
                      ask(f, "SELECT count(*) FROM event WHERE ph = 's'"));
     int64_t last = ask(f, "SELECT 1e6 * max(ts) FROM event WHERE ph = 'X'");
     assert_true(last < f->r.makespan_ps * 3 / 5);
@@ -141,11 +151,15 @@ static void window_and_ranks_select(void **state)
     f->o.first_rank = 1;
     f->o.last_rank = 2;
     trace(f, TRACE_CHROME);
-    assert_int_equal(ask(f, "SELECT count(DISTINCT tid) * 10 + min(tid) FROM event WHERE ph = 'X'"), 21);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 's'"), 0); /* partners 0-1 and 2-3 are torn */
-    f->o = (struct trace_options){.begin_ps = f->r.makespan_ps / 7 + 5000, .end_ps = f->r.makespan_ps / 7 * 2 - 5000};
+    assert_int_equal(ask(f, "SELECT count(DISTINCT tid) * 10 + min(tid) FROM event WHERE ph = 'X'"),
+                     21);
+    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 's'"),
+                     0); /* partners 0-1 and 2-3 are torn */
+    f->o = (struct trace_options){.begin_ps = f->r.makespan_ps / 7 + 5000,
+                                  .end_ps = f->r.makespan_ps / 7 * 2 - 5000};
     trace(f, TRACE_CHROME);
-    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat <> 'stage'"), NRANK * 4);
+    assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'X' AND cat <> 'stage'"),
+                     NRANK * 4);
     f->o.begin_ps = f->r.makespan_ps * 2;
     f->o.end_ps = f->r.makespan_ps * 3;
     assert_false(trace_write(&f->r, TRACE_CHROME, &f->o, stderr, &f->left_out, &f->e));
@@ -160,13 +174,15 @@ static void paje_is_in_order_of_time_and_pj_dump_reads_it(void **state)
     FILE *out = fopen(scratch_path(path, sizeof path, f->folder, "t.paje"), "w");
     assert_true(trace_write(&f->r, TRACE_PAJE, &f->o, out, &f->left_out, &f->e));
     fclose(out);
-    snprintf(command, sizeof command, "pj_dump %s >%s/dump 2>%s/errors && [ ! -s %s/errors ]", path, f->folder,
-             f->folder, f->folder);
+    snprintf(command, sizeof command, "pj_dump %s >%s/dump 2>%s/errors && [ ! -s %s/errors ]", path,
+             f->folder, f->folder, f->folder);
     assert_int_equal(system(command), 0);
     snprintf(command, sizeof command,
-             "[ $(grep -c '^Link' %s/dump) = %d ] && [ $(grep -c '^State.*activity' %s/dump) = %d ]"
-             " && [ $(grep -c '^State.*stage' %s/dump) = %d ] && [ $(grep -c '^Container' %s/dump) = %d ]",
-             f->folder, NRANK * 7, f->folder, NSPAN + NRANK, f->folder, NRANK * 7, f->folder, NRANK + 2);
+             "[ $(grep -c '^Link' %s/dump) = %d ] && [ $(grep -c '^State.*activity' %s/dump) = %d "
+             "] && [ $(grep -c '^State.*stage' %s/dump) = %d ] && [ $(grep -c '^Container' "
+             "%s/dump) = %d ]",
+             f->folder, NRANK * 7, f->folder, NSPAN + NRANK, f->folder, NRANK * 7, f->folder,
+             NRANK + 2);
     if (system(command) != 0) {
         snprintf(command, sizeof command, "cut -d, -f1-3 %s/dump | sort | uniq -c >&2", f->folder);
         (void)!system(command);
@@ -181,7 +197,9 @@ static void csv_has_a_row_per_span(void **state)
     int lines = 0;
     for (const char *c = csv; *c; c++) lines += *c == '\n';
     assert_int_equal(lines, 1 + NSPAN);
-    assert_memory_equal(csv, "rank,stage,kind,begin_ps,end_ps,peer,bytes,message\r\n0,Pre-processing,compute,0,", 79);
+    assert_memory_equal(
+        csv, "rank,stage,kind,begin_ps,end_ps,peer,bytes,message\r\n0,Pre-processing,compute,0,",
+        79);
 }
 
 static void text_shows_what_each_rank_does(void **state)
@@ -210,7 +228,8 @@ static void a_stored_timeline_comes_back(void **state)
     struct fixture *f = *state;
     char path[256];
     struct run_result back;
-    struct store *s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
+    struct store *s =
+        store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
     assert_non_null(s);
     assert_true(store_put(s, &f->spec, NULL, &f->r, &f->e));
     assert_true(trace_read(s, store_run_id(s, &f->spec), f->a, &back, &f->e));
@@ -218,8 +237,9 @@ static void a_stored_timeline_comes_back(void **state)
     assert_int_equal(back.nrank, NRANK);
     for (int64_t i = 0; i < back.nspan; i++) {
         const struct span *x = &back.span[i], *y = &f->r.span[i];
-        assert_true(x->rank == y->rank && x->stage == y->stage && x->kind == y->kind && x->begin_ps == y->begin_ps &&
-                    x->end_ps == y->end_ps && x->peer == y->peer && x->bytes == y->bytes && x->message == y->message);
+        assert_true(x->rank == y->rank && x->stage == y->stage && x->kind == y->kind &&
+                    x->begin_ps == y->begin_ps && x->end_ps == y->end_ps && x->peer == y->peer &&
+                    x->bytes == y->bytes && x->message == y->message);
     }
     char *direct = strdup(trace(f, TRACE_CHROME));
     f->r = back;

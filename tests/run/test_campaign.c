@@ -1,4 +1,5 @@
-/* test_campaign.c - many runs on worker processes: the same rows whatever their number, and a death is told. */
+/* test_campaign.c - many runs on worker processes: the same rows whatever their number, and a death
+ * is told. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -23,7 +24,8 @@ struct rows {
     uint64_t digest[MOST_RUNS], stages[MOST_RUNS];
     int64_t makespan_ps[MOST_RUNS], finish_ps[MOST_RUNS], busy_ps[MOST_RUNS];
     int nrank[MOST_RUNS];
-    int failed, refusal; /* runs that could not be made or lost their worker; the last one's kind and text */
+    /* runs that could not be made or lost their worker; the last one's kind and text */
+    int failed, refusal;
     char text[256];
 };
 
@@ -35,7 +37,8 @@ static uint64_t hash(const void *data, size_t n)
     return h;
 }
 
-/* Kill all our children, or the one started last, which has by then told its answer and waits for an order. */
+/* Kill all our children, or the one started last, which has by then told its answer and waits for
+ * an order. */
 static void kill_workers(bool all)
 {
     char path[64];
@@ -80,7 +83,8 @@ static struct plan speedup(void)
     struct plan p;
     struct err e;
     err_clear(&e);
-    if (!plan_read(&p, MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, &e)) fail_msg("%s", e.text);
+    if (!plan_read(&p, MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, &e))
+        fail_msg("%s", e.text);
     assert_int_equal(p.nrun, 28);
     return p;
 }
@@ -90,7 +94,8 @@ static struct rows campaign(const struct plan *p, const bool *skip, int workers)
     struct rows rows = {0};
     struct err e;
     err_clear(&e);
-    if (!run_campaign(p->run, NULL, p->nrun, skip, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+    if (!run_campaign(p->run, NULL, p->nrun, skip, workers, true, keep, &rows, &e))
+        fail_msg("%s", e.text);
     return rows;
 }
 
@@ -159,7 +164,8 @@ static void a_run_that_cannot_be_made_fails_and_the_others_go_on(void **unused)
         struct rows rows = {0};
         struct err e;
         err_clear(&e);
-        if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+        if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e))
+            fail_msg("%s", e.text);
         assert_int_equal(rows.n, p.nrun);
         assert_int_equal(rows.failed, 1);
         assert_int_equal(rows.refusal, ERR_CONFIG);
@@ -174,7 +180,8 @@ static void a_worker_that_dies_costs_its_run_alone(void **unused)
     (void)unused;
     struct plan p = speedup();
     struct run_spec *run = own_runs(&p);
-    for (int i = 2; i < p.nrun; i++) { /* so long that the first row is there while others still run */
+    /* so long that the first row is there while others still run */
+    for (int i = 2; i < p.nrun; i++) {
         run[i] = run[13];
         run[i].machine.network.level = LEVEL_FLIT;
     }
@@ -183,7 +190,8 @@ static void a_worker_that_dies_costs_its_run_alone(void **unused)
             struct rows rows = {.dies = dies};
             struct err e;
             err_clear(&e);
-            if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+            if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e))
+                fail_msg("%s", e.text);
             assert_int_equal(rows.n, p.nrun);
             assert_true(rows.failed >= 1 && rows.failed <= (dies == ALL ? workers : 1));
             assert_int_equal(rows.refusal, ERR_INTERNAL);
@@ -225,10 +233,14 @@ static void sharing_scenes_changes_no_number(void **unused)
     assert_true(run_campaign(p.run, order, n, NULL, 1, true, keep_whole, &without, &e));
     for (int i = 0; i < n; i++) {
         const struct run_result *x = &with.row[i], *y = &without.row[i];
-        assert_true(x->status == y->status && x->digest == y->digest && x->makespan_ps == y->makespan_ps);
-        assert_true(x->nerror == y->nerror && x->nbaseline == y->nbaseline && x->nerror > 0 && x->nbaseline > 3);
-        for (int k = 0; k < x->nerror; k++) assert_true(x->error[k].relative == y->error[k].relative);
-        for (int k = 0; k < x->nbaseline; k++) assert_true(x->baseline[k].time_ps == y->baseline[k].time_ps);
+        assert_true(x->status == y->status && x->digest == y->digest &&
+                    x->makespan_ps == y->makespan_ps);
+        assert_true(x->nerror == y->nerror && x->nbaseline == y->nbaseline && x->nerror > 0 &&
+                    x->nbaseline > 3);
+        for (int k = 0; k < x->nerror; k++)
+            assert_true(x->error[k].relative == y->error[k].relative);
+        for (int k = 0; k < x->nbaseline; k++)
+            assert_true(x->baseline[k].time_ps == y->baseline[k].time_ps);
     }
     plan_free(&p);
 }

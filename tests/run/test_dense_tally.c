@@ -1,4 +1,5 @@
-/* test_dense_tally.c - counts of the dense serial codes against the published tallies, and their growth. */
+/* test_dense_tally.c - counts of the dense serial codes against the published tallies, and their
+ * growth. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,8 @@ static struct model *chain(struct arena *a, int n, enum model_joint joint)
     err_clear(&e);
     for (int i = 0; i < n; i++) {
         struct body_def b = {
-            .parent = i - 1, .joint = joint, .axis = {0, 0, 1}, .mass = 1, .inertia = {1, 0, 0, 1, 0, 1}};
+            .parent = i - 1, .joint = joint, .axis = {0, 0, 1}, .mass = 1, .inertia = {1, 0, 0, 1,
+            0, 1}};
         assert_int_equal(model_add_body(m, &b, &e), i);
     }
     assert_true(model_finish(m, false, &e));
@@ -35,7 +37,8 @@ static double flops(const struct model *m, enum forward_method method)
     return (double)w.flop;
 }
 
-/* Per body of a revolute chain: 2000, 3050, 6500 (tallies of general 6x6 operators, good to a few per cent). */
+/* Per body of a revolute chain: 2000, 3050, 6500 (tallies of general 6x6 operators, good to a few
+ * per cent). */
 static void revolute_tallies_are_the_published_ones(void **state)
 {
     (void)state;
@@ -57,14 +60,15 @@ static void composite_bodies_grow_as_the_cube(void **state)
     struct arena *a = arena_create();
     for (int n = 10; n <= 400; n *= 2) {
         const struct model *m = chain(a, n, JOINT_REVOLUTE);
-        double d = n,
-               expected = d * (2000 + 828 + 77) + 77 * d * (d - 1) / 2 + d * (d + 1) * (2 * d + 1) / 6 + 2 * d * d;
+        double d = n, expected = d * (2000 + 828 + 77) + 77 * d * (d - 1) / 2 +
+                                 d * (d + 1) * (2 * d + 1) / 6 + 2 * d * d;
         assert_true(fabs(flops(m, FORWARD_CRBA) / expected - 1) < 1e-12);
     }
     arena_destroy(a);
 }
 
-/* More freedom costs an inverse dynamics more, constraint forces less: there are fewer constraints. */
+/* More freedom costs an inverse dynamics more, constraint forces less: there are fewer
+ * constraints. */
 static void freedom_counts(void **state)
 {
     (void)state;

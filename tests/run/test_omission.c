@@ -1,4 +1,5 @@
-/* test_omission.c - leaving out what a scene does not need changes no result beyond the omission's class. */
+/* test_omission.c - leaving out what a scene does not need changes no result beyond the omission's
+ * class. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -43,9 +44,9 @@ static bool often(struct random *r, int one_in) { return any(r, one_in) != 0; }
 
 static void draw_model(struct random *r, struct model_spec *m)
 {
-    static const enum model_generator kinds[] = {MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN,
-                                                 MODEL_COMB,         MODEL_STAR,         MODEL_RANDOM_TREE,
-                                                 MODEL_DENDRIMER,    MODEL_RING,         MODEL_FOUR_BAR};
+    static const enum model_generator kinds[] = {
+        MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN, MODEL_COMB,    MODEL_STAR,
+        MODEL_RANDOM_TREE,  MODEL_DENDRIMER,    MODEL_RING,         MODEL_FOUR_BAR};
     static const enum model_joint joints[] = {JOINT_REVOLUTE,  JOINT_REVOLUTE,    JOINT_PRISMATIC,
                                               JOINT_SPHERICAL, JOINT_CYLINDRICAL, JOINT_MIXED};
     *m = (struct model_spec){.generator = kinds[any(r, 9)],
@@ -82,8 +83,10 @@ static void draw_kernel(struct random *r, const struct model_spec *m, struct ker
     *k = (struct kernel_spec){.formulation = (enum formulation)any(r, 2),
                               .solver = (enum solver)any(r, 6),
                               .part_solver = (enum part_solver)any(r, 2),
-                              .operators = chain && !often(r, 4) ? OPERATORS_DENSE : OPERATORS_STRUCTURED,
-                              .precision = often(r, 4) ? PRECISION_DOUBLE : (enum precision)any(r, 3),
+                              .operators = chain && !often(r,
+                              4) ? OPERATORS_DENSE : OPERATORS_STRUCTURED,
+                              .precision = often(r, 4) ? PRECISION_DOUBLE : (enum precision)any(r,
+                              3),
                               .partition = (enum partition_rule)any(r, 2),
                               .composites_incoming = often(r, 3),
                               .hybrid_levels = 1,
@@ -99,14 +102,18 @@ static void draw_kernel(struct random *r, const struct model_spec *m, struct ker
 /* Scene number `number` of a stream that is the same on every host. */
 static struct run_spec draw(int number)
 {
-    static const enum network_level levels[] = {LEVEL_LOGGP, LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_AUTO};
+    static const enum network_level levels[] = {LEVEL_LOGGP, LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET,
+                                                LEVEL_AUTO};
     struct random r = random_make(20, (uint64_t)number, 1);
     struct run_spec s = {0};
     draw_model(&r, &s.model);
-    if (number % 3 == 0) s.model.axes = AXES_PARALLEL; /* planar, unless something else leaves the plane */
+    /* planar, unless something else leaves the plane */
+    if (number % 3 == 0) s.model.axes = AXES_PARALLEL;
     draw_kernel(&r, &s.model, &s.kernel);
-    if (s.kernel.formulation == FORMULATION_DIRECT && number % 4 == 0) s.kernel.step = STEP_LINEARLY_IMPLICIT;
-    if (s.kernel.formulation == FORMULATION_DIRECT && number % 5 == 0 && s.model.generator == MODEL_SERIAL_CHAIN)
+    if (s.kernel.formulation == FORMULATION_DIRECT && number % 4 == 0)
+        s.kernel.step = STEP_LINEARLY_IMPLICIT;
+    if (s.kernel.formulation == FORMULATION_DIRECT && number % 5 == 0 &&
+        s.model.generator == MODEL_SERIAL_CHAIN)
         s.kernel.residual = RESIDUAL_TWICE;
     s.nrank = 1 + any(&r, s.model.nbody);
     s.machine = trial_machine(s.nrank);
@@ -118,17 +125,20 @@ static struct run_spec draw(int number)
     return s;
 }
 
-static void keep_answer(const struct program_run *r, const struct run_result *result, struct answer *v)
+static void keep_answer(const struct program_run *r, const struct run_result *result,
+                        struct answer *v)
 {
     *v = (struct answer){.nrank = r->spec.nrank, .makespan_ps = result->makespan_ps};
     for (int i = 0; i < result->nrank * result->nstage; i++) v->flops += result->stage[i].work.flop;
-    for (int k = OUTPUT_TAU; k <= OUTPUT_LAMBDA; k++) append(v, k, r->output[k].x, (int)r->output[k].n);
+    for (int k = OUTPUT_TAU; k <= OUTPUT_LAMBDA; k++)
+        append(v, k, r->output[k].x, (int)r->output[k].n);
     memcpy(v->finish_ps, result->finish_ps, (size_t)r->spec.nrank * sizeof(int64_t));
 }
 
-/* answer_of: the spec's run with what spec->keep says; false: the kernel does not do such scenes. `left_out` (may be
- * NULL): what it leaves out. */
-static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v, struct omission *left_out, int *n)
+/* answer_of: the spec's run with what spec->keep says; false: the kernel does not do such scenes.
+ * `left_out` (may be NULL): what it leaves out. */
+static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v,
+                      struct omission *left_out, int *n)
 {
     struct err e = {0};
     struct run_cache *cache = run_cache_create();
@@ -148,8 +158,8 @@ static bool answer_of(const struct run_spec *spec, struct arena *a, struct answe
     return done;
 }
 
-/* change: largest difference of two answers, each quantity relative to its largest number; 0: all numbers are equal, a
- * NaN to a NaN. */
+/* change: largest difference of two answers, each quantity relative to its largest number; 0: all
+ * numbers are equal, a NaN to a NaN. */
 static double change(const struct answer *a, const struct answer *b)
 {
     double worst = a->n == b->n ? 0 : INFINITY;
@@ -168,35 +178,43 @@ static double change(const struct answer *a, const struct answer *b)
 
 static void describe(const struct run_spec *s, char *text, size_t size)
 {
-    snprintf(text, size, "%s, generator %d, n %d, P %d, joint %d, formulation %d, solver %d, precision %d, steps %d",
-             s->kernel.name, s->model.generator, s->model.nbody, s->nrank, s->model.joint, s->kernel.formulation,
-             s->kernel.solver, s->kernel.precision, s->kernel.steps);
+    snprintf(
+        text, size,
+        "%s, generator %d, n %d, P %d, joint %d, formulation %d, solver %d, precision %d, steps %d",
+        s->kernel.name, s->model.generator, s->model.nbody, s->nrank, s->model.joint,
+        s->kernel.formulation, s->kernel.solver, s->kernel.precision, s->kernel.steps);
 }
 
-/* What only the simulator and the references leave out: no simulated time may change. What makes another program or
- * another tree of it may take more or less; all others never do more, nor take longer where messages cannot get in each
- * other's way; where they can, those that leave earlier may meet others: 1 %. */
+/* What only the simulator and the references leave out: no simulated time may change. What makes
+ * another program or another tree of it may take more or less; all others never do more, nor take
+ * longer where messages cannot get in each other's way; where they can, those that leave earlier
+ * may meet others: 1 %. */
 enum {
-    ON_THE_HOST = KEEP_START_EVENTS | KEEP_SPANS | KEEP_LINKS | KEEP_BASELINE | KEEP_CONTENTION | KEEP_GENERAL |
-                  KEEP_SCENES,
+    ON_THE_HOST = KEEP_START_EVENTS | KEEP_SPANS | KEEP_LINKS | KEEP_BASELINE | KEEP_CONTENTION |
+                  KEEP_GENERAL | KEEP_SCENES,
     ANOTHER_PROGRAM = KEEP_BRANCHES | KEEP_FIXED
 };
 
 /* held_against: the answer with something put back against the one without. */
-static void held_against(int number, const struct run_spec *spec, const struct answer *lean, const struct answer *full,
-                         const char *what, double bound, unsigned put_back)
+static void held_against(int number, const struct run_spec *spec, const struct answer *lean,
+                         const struct answer *full, const char *what, double bound,
+                         unsigned put_back)
 {
     char text[300];
     const double c = change(lean, full);
-    const bool same_times = (put_back & ~(unsigned)ON_THE_HOST) == 0, less = !(put_back & ANOTHER_PROGRAM);
+    const bool same_times = (put_back & ~(unsigned)ON_THE_HOST) == 0,
+               less = !(put_back & ANOTHER_PROGRAM);
     describe(spec, text, sizeof text);
-    if (c > bound) fail_msg("scene %d: %s: changed by %g, more than %g (%s)", number, what, c, bound, text);
-    if (less && lean->flops > full->flops) fail_msg("scene %d: %s is more work (%s)", number, what, text);
+    if (c > bound)
+        fail_msg("scene %d: %s: changed by %g, more than %g (%s)", number, what, c, bound, text);
+    if (less && lean->flops > full->flops)
+        fail_msg("scene %d: %s is more work (%s)", number, what, text);
     const double slack = spec->machine.network.level == LEVEL_LOGGP ? 0 : 0.01;
     if (less && (double)lean->makespan_ps > (1 + slack) * (double)full->makespan_ps)
-        fail_msg("scene %d: %s makes it slower: %lld, not %lld (%s)", number, what, (long long)lean->makespan_ps,
-                 (long long)full->makespan_ps, text);
-    if (same_times && memcmp(lean->finish_ps, full->finish_ps, (size_t)lean->nrank * sizeof(int64_t)) != 0)
+        fail_msg("scene %d: %s makes it slower: %lld, not %lld (%s)", number, what,
+                 (long long)lean->makespan_ps, (long long)full->makespan_ps, text);
+    if (same_times &&
+        memcmp(lean->finish_ps, full->finish_ps, (size_t)lean->nrank * sizeof(int64_t)) != 0)
         fail_msg("scene %d: %s: other times (%s)", number, what, text);
 }
 
@@ -231,12 +249,14 @@ static int try_scene(int number, struct tally *tally)
         put_back |= left_out[i].keep;
         if (left_out[i].keep == 0) continue;
         spec.keep = left_out[i].keep;
-        if (!answer_of(&spec, a, &full, NULL, NULL)) fail_msg("scene %d: refused with %s", number, left_out[i].what);
+        if (!answer_of(&spec, a, &full, NULL, NULL))
+            fail_msg("scene %d: refused with %s", number, left_out[i].what);
         held_against(number, &spec, &lean, &full, left_out[i].what, left_out[i].bound,
                      left_out[i].keep);
     }
     spec.keep = KEEP_ALL;
-    if (does && !answer_of(&spec, a, &full, NULL, NULL)) fail_msg("scene %d: refused with all of them", number);
+    if (does && !answer_of(&spec, a, &full, NULL, NULL))
+        fail_msg("scene %d: refused with all of them", number);
     if (does) held_against(number, &spec, &lean, &full, "all of them", bounds, put_back);
     arena_destroy(a);
     return does;
@@ -249,12 +269,13 @@ static void no_omission_changes_a_result_beyond_its_class(void **state)
     int scenes = 0;
     for (int number = 0; number < SCENES; number++) scenes += try_scene(number, tally);
     assert_true(scenes >= 200);
-    static const unsigned rare[] = {KEEP_EXTERNAL, KEEP_VELOCITY, KEEP_BASE, KEEP_BIAS, KEEP_START_EVENTS,
-                                    KEEP_CONTENTION, KEEP_FIXED, KEEP_GENERAL, KEEP_BRANCHES,
-                                    KEEP_TURN, KEEP_SPATIAL};
+    static const unsigned rare[] = {KEEP_EXTERNAL,     KEEP_VELOCITY,   KEEP_BASE,   KEEP_BIAS,
+                                    KEEP_START_EVENTS, KEEP_CONTENTION, KEEP_FIXED,  KEEP_GENERAL,
+                                    KEEP_BRANCHES,     KEEP_TURN,       KEEP_SPATIAL};
     for (size_t i = 0; i < sizeof rare / sizeof *rare; i++) {
         int found = 0;
-        for (const struct tally *t = tally; t->scenes > 0; t++) found += t->keep == rare[i] ? t->scenes : 0;
+        for (const struct tally *t = tally; t->scenes > 0; t++)
+            found += t->keep == rare[i] ? t->scenes : 0;
         if (found < 8) fail_msg("keep bit %u: only %d scenes", rare[i], found);
     }
 }

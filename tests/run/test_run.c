@@ -1,4 +1,5 @@
-/* test_run.c - one run: accounted for to the picosecond, held against serial answers, refused when it is wrong. */
+/* test_run.c - one run: accounted for to the picosecond, held against serial answers, refused when
+ * it is wrong. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,7 +68,8 @@ static void expect_accounted(const struct run_result *r)
 static void every_level_accounts_for_every_picosecond(void **unused)
 {
     (void)unused;
-    static const char *const level[] = {"level=loggp", "level=link", "level=packet", "level=flit", "level=auto"};
+    static const char *const level[] = {"level=loggp", "level=link", "level=packet", "level=flit",
+                                        "level=auto"};
     for (int i = 0; i < 5; i++) {
         for (int n = 6; n <= 13; n += 7) {
             char bodies[16];
@@ -99,7 +101,8 @@ static void contention_is_never_charged_without_links(void **unused)
 }
 
 /* A run with the answers of the serial programs, to be spoilt. */
-static void serial_run(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct program_run *r)
+static void serial_run(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
+                       struct program_run *r)
 {
     struct err e;
     err_clear(&e);
@@ -108,7 +111,8 @@ static void serial_run(const struct run_spec *spec, struct run_cache *cache, str
     struct work w = {0};
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
     t->inverse(job->model, job->state, a, program_output(r, OUTPUT_TAU), &w);
-    assert_true(t->forward(job->model, job->state, FORWARD_CRBA, a, program_output(r, OUTPUT_QDD), NULL, NULL, &w));
+    assert_true(t->forward(job->model, job->state, FORWARD_CRBA, a, program_output(r, OUTPUT_QDD),
+                           NULL, NULL, &w));
 }
 
 static struct run_result checked(struct program_run *run, struct arena *a)
@@ -158,8 +162,8 @@ static void rounding_beyond_the_tolerance_makes_a_real_run_invalid(void **unused
 {
     (void)unused;
     struct plan p;
-    struct run_spec spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=float", "kernel.formulation=paper",
-                                "kernel.refinement=as-given");
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=float",
+                                "kernel.formulation=paper", "kernel.refinement=as-given");
     struct arena *a = arena_create();
     struct run_result r = run(&spec, a);
     assert_int_equal(r.status, RUN_INVALID);
@@ -174,13 +178,15 @@ static void rounding_beyond_the_tolerance_makes_a_real_run_invalid(void **unused
     plan_free(&p);
 }
 
-/* Masses of a wide range spoil parallel cyclic reduction; the residual tells it, and one refinement repairs it. */
+/* Masses of a wide range spoil parallel cyclic reduction; the residual tells it, and one refinement
+ * repairs it. */
 static void refinement_is_switched_on_where_the_residual_asks_for_it(void **unused)
 {
     (void)unused;
     struct plan p;
-    struct run_spec spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.formulation=direct",
-                                "model.inertia=random", "model.mass_ratio=1e6", "kernel.refinement=as-given");
+    struct run_spec spec =
+        SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.formulation=direct",
+             "model.inertia=random", "model.mass_ratio=1e6", "kernel.refinement=as-given");
     struct arena *a = arena_create();
     const struct run_result plain = run(&spec, a);
     spec.kernel.refinement = REFINEMENT_AS_NEEDED;
@@ -210,37 +216,41 @@ static void nothing_is_refined_that_is_good_enough_or_keeps_no_factors(void **un
     struct run_result r = run(&spec, a);
     assert_true(r.status == RUN_OK && r.inner_added + r.outer_added == 0);
     plan_free(&p);
-    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.solver=pcr", "model.inertia=random",
-                "model.mass_ratio=1e8");
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.solver=pcr",
+                "model.inertia=random", "model.mass_ratio=1e8");
     r = run(&spec, a);
     assert_true(r.status == RUN_INVALID && r.inner_added + r.outer_added == 0);
     plan_free(&p);
     /* where refining does not help, the answer as given is what is told, and that it is none */
-    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random", "model.mass_ratio=1e12");
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random",
+                "model.mass_ratio=1e12");
     r = run(&spec, a);
     assert_true(r.status == RUN_INVALID && r.residual > 1e-3);
     assert_non_null(strstr(r.text, "not to be trusted"));
     plan_free(&p);
     /* the direct form has a further way: forces and residual in twice the digits */
-    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random", "model.mass_ratio=1e12",
-                "kernel.formulation=direct");
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random",
+                "model.mass_ratio=1e12", "kernel.formulation=direct");
     r = run(&spec, a);
-    assert_true(r.status == RUN_OK && r.twice_added && r.inner_added == 4 && r.residual_before > 0.1);
+    assert_true(r.status == RUN_OK && r.twice_added && r.inner_added == 4 &&
+                r.residual_before > 0.1);
     assert_true(r.error[0].relative < 1e-9);
     plan_free(&p);
     arena_destroy(a);
 }
 
-/* What a tree's linearly implicit steps cannot have is neither tried nor named as a way out; what is refined in vain is
- * told as it was given. */
+/* What a tree's linearly implicit steps cannot have is neither tried nor named as a way out; what
+ * is refined in vain is told as it was given. */
 static void implicit_steps_of_trees_are_refined_from_outside(void **unused)
 {
     (void)unused;
     struct plan p;
     struct arena *a = arena_create();
     struct run_spec spec = SPEC(&p, "level=link", "n=16", "ranks=4", "model.generator=random-tree",
-                                "model.inertia=random", "model.mass_ratio=1e12", "model.stiffness=1e6 N m/rad",
-                                "kernel.name=forward", "kernel.formulation=direct", "kernel.steps=2",
+                                "model.inertia=random", "model.mass_ratio=1e12",
+                                "model.stiffness=1e6 N m/rad",
+                                "kernel.name=forward", "kernel.formulation=direct",
+                                "kernel.steps=2",
                                 "kernel.step=linearly-implicit");
     struct run_result r = run(&spec, a);
     assert_int_equal(r.status, RUN_OK);
@@ -254,19 +264,22 @@ static void implicit_steps_of_trees_are_refined_from_outside(void **unused)
     plan_free(&p);
 }
 
-/* The residual of either formulation tells the error of its answer to within two decades and never hides it. */
+/* The residual of either formulation tells the error of its answer to within two decades and never
+ * hides it. */
 static void the_residual_tells_the_error(void **unused)
 {
     (void)unused;
-    static const char *const formulation[] = {"kernel.formulation=paper", "kernel.formulation=direct"};
-    static const char *const ratio[] = {"model.mass_ratio=1", "model.mass_ratio=1e4", "model.mass_ratio=1e6",
-                                        "model.mass_ratio=1e8"};
+    static const char *const formulation[] = {"kernel.formulation=paper",
+                                              "kernel.formulation=direct"};
+    static const char *const ratio[] = {"model.mass_ratio=1", "model.mass_ratio=1e4",
+                                        "model.mass_ratio=1e6", "model.mass_ratio=1e8"};
     struct arena *a = arena_create();
     for (int f = 0; f < 2; f++)
         for (int k = 0; k < 4; k++) {
             struct plan p;
-            struct run_spec spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", formulation[f],
-                                        "model.inertia=random", ratio[k], "kernel.refinement=as-given");
+            struct run_spec spec =
+                SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", formulation[f],
+                     "model.inertia=random", ratio[k], "kernel.refinement=as-given");
             const struct run_result r = run(&spec, a);
             const double error = r.error[0].relative;
             assert_true(r.residual > 0.1 * error && r.residual < 100 * error + 1e-12);
@@ -286,7 +299,8 @@ static const struct baseline *baseline_of(const struct run_result *r, const char
 static void baselines_are_all_the_work_and_the_fastest_of_the_serial_codes(void **unused)
 {
     (void)unused;
-    static const char *const serial[] = {"rnea+aba", "rnea+crba", "rnea+cfa-paper", "rnea+cfa-direct"};
+    static const char *const serial[] = {"rnea+aba", "rnea+crba", "rnea+cfa-paper",
+                                         "rnea+cfa-direct"};
     struct plan p;
     struct run_spec spec = SPEC(&p, "level=loggp", "n=24");
     struct arena *a = arena_create();
@@ -308,7 +322,8 @@ static void baselines_are_all_the_work_and_the_fastest_of_the_serial_codes(void 
 
 static void near(const char *what, double estimated, double counted)
 {
-    if (fabs(estimated - counted) > 0.2 * counted) fail_msg("%s: estimated %g, counted %g", what, estimated, counted);
+    if (fabs(estimated - counted) > 0.2 * counted)
+        fail_msg("%s: estimated %g, counted %g", what, estimated, counted);
 }
 
 static void estimates_are_within_a_fifth_of_what_is_counted(void **unused)
@@ -324,7 +339,8 @@ static void estimates_are_within_a_fifth_of_what_is_counted(void **unused)
                                             {"n=32", "kernel=forward"}};
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
         struct plan p;
-        struct run_spec spec = SPEC(&p, "level=loggp", points[i][0], points[i][1] ? points[i][1] : "seed=1");
+        struct run_spec spec =
+            SPEC(&p, "level=loggp", points[i][0], points[i][1] ? points[i][1] : "seed=1");
         struct arena *a = arena_create();
         struct run_result r = run(&spec, a);
         struct run_estimate x;
@@ -372,7 +388,8 @@ static void fail_a_check(void *context)
 }
 
 /* What the process writes to stderr before a CHECK ends it, in a child. */
-static void last_words(const struct run_spec *spec, const struct run_order *order, char *text, int size)
+static void last_words(const struct run_spec *spec, const struct run_order *order, char *text,
+                       int size)
 {
     int end[2];
     assert_int_equal(pipe(end), 0);
@@ -387,7 +404,8 @@ static void last_words(const struct run_spec *spec, const struct run_order *orde
     }
     close(end[1]);
     int n = 0;
-    for (ssize_t k; n < size - 1 && (k = read(end[0], text + n, (size_t)(size - 1 - n))) > 0;) n += (int)k;
+    for (ssize_t k; n < size - 1 && (k = read(end[0], text + n, (size_t)(size - 1 - n))) > 0;)
+        n += (int)k;
     text[n] = '\0';
     close(end[0]);
     int status;

@@ -35,7 +35,8 @@ static void against_the_list(uint64_t spread)
     sim_ps now = 0;
     for (uint64_t step = 0; step < 8000; step++) {
         if (n < MOST && (n == 0 || random_below(&r, 5) < 3)) {
-            struct event e = {now + (sim_ps)random_below(&r, spread), random_below(&r, 4), NULL, NULL, step};
+            struct event e = {now + (sim_ps)random_below(&r, spread), random_below(&r, 4), NULL,
+                              NULL, step};
             event_queue_push(&q, &e);
             twin[n++] = e;
             continue;

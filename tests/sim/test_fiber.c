@@ -72,12 +72,13 @@ static void fibers_interleave_and_keep_their_stacks(void **state)
 static void use_stack(void *argument)
 {
     volatile char big[24 * 1024];
-    for (size_t i = 0; i < sizeof big; i += 64) big[i] = 1; /* touched line by line: no optimiser may leave it out */
+    /* touched line by line: no optimiser may leave it out */
+    for (size_t i = 0; i < sizeof big; i += 64) big[i] = 1;
     *(int *)argument = big[64 * 100];
 }
 
-/* More fibers than the system has mappings for. Where it makes guards without mappings, the guard ends the process;
- * elsewhere the last ones have none, and the spare page tells afterwards. */
+/* More fibers than the system has mappings for. Where it makes guards without mappings, the guard
+ * ends the process; elsewhere the last ones have none, and the spare page tells afterwards. */
 static void an_overflow_of_one_of_very_many_is_seen(void **state)
 {
     (void)state;
@@ -102,7 +103,8 @@ static void an_overflow_of_one_of_very_many_is_seen(void **state)
     waitpid(child, &status, 0);
     if (WIFSIGNALED(status)) assert_int_equal(WTERMSIG(status), SIGSEGV);
     else assert_int_not_equal(WEXITSTATUS(status), 0);
-    if (WIFEXITED(status) && WEXITSTATUS(status) < SEEN) fail_msg("not seen: %d", WEXITSTATUS(status));
+    if (WIFEXITED(status) && WEXITSTATUS(status) < SEEN)
+        fail_msg("not seen: %d", WEXITSTATUS(status));
 }
 
 static void the_peak_sees_what_was_used(void **state)

@@ -1,4 +1,5 @@
-/* random_value.h - a text that a field takes, drawn at random: for tests that go through all fields. */
+/* random_value.h - a text that a field takes, drawn at random: for tests that go through all
+ * fields. */
 #ifndef TESTS_RANDOM_VALUE_H
 #define TESTS_RANDOM_VALUE_H
 
@@ -54,7 +55,8 @@ static void random_value(const struct field *f, struct random *r, char *text, si
         break;
     case FIELD_SEGMENTS:
         snprintf(text, size,
-                 "[{from: 0 B, send.copy: %.17g s/B}, {from: %llu B, gap: 1 us, protocol: synchronous}]",
+                 "[{from: 0 B, send.copy: %.17g s/B}, {from: %llu B, gap: 1 us, protocol: "
+                 "synchronous}]",
                  random_uniform(r, 0, 1), (unsigned long long)random_below(r, 1 << 20) + 1);
         break;
     case FIELD_REALS: {

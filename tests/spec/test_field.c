@@ -63,8 +63,10 @@ static void cover(const struct field_table *t, size_t base, unsigned char *cover
 {
     for (int i = 0; i < t->nfield; i++) {
         const struct field *f = &t->field[i];
-        for (size_t b = 0; b < entry_size(f); b++) assert_int_equal(covered[base + f->offset + b]++, 0);
-        for (size_t b = 0; f->count != 0 && b < sizeof(int); b++) assert_int_equal(covered[base + f->count + b]++, 0);
+        for (size_t b = 0; b < entry_size(f); b++)
+            assert_int_equal(covered[base + f->offset + b]++, 0);
+        for (size_t b = 0; f->count != 0 && b < sizeof(int); b++)
+            assert_int_equal(covered[base + f->count + b]++, 0);
     }
 }
 
@@ -75,7 +77,8 @@ static void every_member_of_a_run_has_one_field(void **state)
     int ntable, gap = 0;
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) cover(table[i], table[i]->offset, covered);
-    memset(covered + offsetof(struct run_spec, rep), 1, sizeof(int)); /* what the plan itself fills in */
+    /* what the plan itself fills in */
+    memset(covered + offsetof(struct run_spec, rep), 1, sizeof(int));
     memset(covered + offsetof(struct run_spec, model_file), 1, 65);
     const size_t found = offsetof(struct run_spec, program.kind);
     memset(covered + found, 1, offsetof(struct run_spec, program.image) + sizeof(char *) - found);
@@ -86,7 +89,8 @@ static void every_member_of_a_run_has_one_field(void **state)
     memset(covered + offsetof(struct run_spec, called), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused_kind), 1, sizeof(int));
-    memset(covered + offsetof(struct run_spec, keep), 1, sizeof(unsigned)); /* no setting: results are the same */
+    /* no setting: results are the same */
+    memset(covered + offsetof(struct run_spec, keep), 1, sizeof(unsigned));
     for (size_t b = 0; b < sizeof covered; b++) {
         gap = covered[b] ? 0 : gap + 1;
         if (gap >= 8) fail_msg("byte %zu of run_spec belongs to no field", b);
@@ -102,7 +106,8 @@ static void keys_are_unique_and_documented(void **state)
         for (int j = 0; j < table[i]->nfield; j++) {
             const struct field *f = &table[i]->field[j];
             char full[128];
-            snprintf(full, sizeof full, "%s%s%s", table[i]->prefix, table[i]->prefix[0] ? "." : "", f->key);
+            snprintf(full, sizeof full, "%s%s%s", table[i]->prefix, table[i]->prefix[0] ? "." : "",
+                     f->key);
             assert_int_equal(field_find(table[i], f->key), j);
             assert_ptr_equal(field_find_full(full, &found), f);
             assert_ptr_equal(found, table[i]);
@@ -130,13 +135,16 @@ static void values_read_back_to_the_same_bits(void **state)
                 char text[1024], why[256] = "";
                 random_value(f, &r, text, sizeof text);
                 void *a = (char *)&once + table[i]->offset, *b = (char *)&twice + table[i]->offset;
-                if (!field_set(f, a, text, arena, why, (int)sizeof why)) fail_msg("%s: %s: %s", f->key, text, why);
+                if (!field_set(f, a, text, arena, why, (int)sizeof why))
+                    fail_msg("%s: %s: %s", f->key, text, why);
                 field_print(f, a, &first);
-                if (!field_set(f, b, first.s, arena, why, (int)sizeof why)) fail_msg("%s: %s", f->key, why);
+                if (!field_set(f, b, first.s, arena, why, (int)sizeof why))
+                    fail_msg("%s: %s", f->key, why);
                 field_print(f, b, &second);
                 assert_string_equal(first.s, second.s);
                 if (f->kind != FIELD_INT_LIST && f->kind != FIELD_PAIR_LIST)
-                    assert_memory_equal((char *)a + f->offset, (char *)b + f->offset, entry_size(f));
+                    assert_memory_equal((char *)a + f->offset, (char *)b + f->offset,
+                                        entry_size(f));
                 text_free(&first);
                 text_free(&second);
             }
@@ -172,13 +180,15 @@ static void set_ok(const char *key, const char *text, struct run_spec *run)
     const struct field *f = field_find_full(key, &t);
     char why[256] = "";
     assert_non_null(f);
-    if (!field_set(f, (char *)run + t->offset, text, arena, why, (int)sizeof why)) fail_msg("%s: %s", text, why);
+    if (!field_set(f, (char *)run + t->offset, text, arena, why, (int)sizeof why))
+        fail_msg("%s: %s", text, why);
 }
 
 static void lists_are_read_in_every_spelling(void **state)
 {
     (void)state;
-    static const char *const dims[] = {"[16, 8, 8]", "16x8x8", "16 8 8", "16, 8, 8", " [ 16 , 8,8 ] "};
+    static const char *const dims[] = {"[16, 8, 8]", "16x8x8", "16 8 8", "16, 8, 8",
+                                       " [ 16 , 8,8 ] "};
     struct run_spec run = {0};
     for (size_t i = 0; i < sizeof dims / sizeof *dims; i++) {
         set_ok("machine.topology.dims", "[1, 2, 3, 4, 5]", &run);
@@ -188,15 +198,17 @@ static void lists_are_read_in_every_spelling(void **state)
         assert_int_equal(run.machine.topology.dims[2], 8);
         assert_int_equal(run.machine.topology.dims[3], 0);
     }
-    static const char *const gravity[] = {"[0, 0, -1.5] m/s^2", "0 0 -1.5 m/s^2", "0, 0, -1.5 m/s^2",
-                                          "[0 m/s^2, 0 m/s^2, -1.5 m/s^2]", "0 m/s^2 0 m/s^2 -1.5 m/s^2"};
+    static const char *const gravity[] = {"[0, 0, -1.5] m/s^2", "0 0 -1.5 m/s^2",
+                                          "0, 0, -1.5 m/s^2", "[0 m/s^2, 0 m/s^2, -1.5 m/s^2]",
+                                          "0 m/s^2 0 m/s^2 -1.5 m/s^2"};
     for (size_t i = 0; i < sizeof gravity / sizeof *gravity; i++) {
         run.model.gravity[2] = 0;
         set_ok("model.gravity", gravity[i], &run);
         assert_true(run.model.gravity[2] == -1.5 && run.model.gravity[0] == 0);
     }
     set_ok("machine.topology.dim_bandwidth", "[5.25 GB/s, 15.75 GB/s]", &run);
-    assert_true(run.machine.topology.dim_bandwidth[1] == 15.75e9 && run.machine.topology.dim_bandwidth[2] == 0);
+    assert_true(run.machine.topology.dim_bandwidth[1] == 15.75e9 &&
+                run.machine.topology.dim_bandwidth[2] == 0);
     set_ok("machine.topology.links", "[[0,1],[1,2],]", &run);
     assert_int_equal(run.machine.topology.nlink, 2);
     assert_int_equal(run.machine.topology.link[1][1], 2);
@@ -215,7 +227,8 @@ static void wrong_values_are_refused_with_what_was_expected(void **state)
         {"model.n", "3.5", "not a whole number"},
         {"model.n", "", "not a whole number"},
         {"model.n", "99999999999999999999", "out of range"},
-        {"machine.network.link.bandwidth", "480", "no unit; expected a bandwidth such as '480 MB/s'"},
+        {"machine.network.link.bandwidth", "480",
+         "no unit; expected a bandwidth such as '480 MB/s'"},
         {"machine.network.link.bandwidth", "480 MHz", "unit of a frequency"},
         {"machine.network.link.bandwidth", "-1 MB/s", "out of range"},
         {"machine.network.link.bandwidth", "inf MB/s", "finite"},
@@ -250,7 +263,8 @@ static void wrong_values_are_refused_with_what_was_expected(void **state)
         assert_non_null(f);
         if (field_set(f, (char *)&run + t->offset, wrong[i].text, arena, why, (int)sizeof why))
             fail_msg("%s accepts '%s'", wrong[i].key, wrong[i].text);
-        if (strstr(why, wrong[i].expected) == NULL) fail_msg("%s '%s': %s", wrong[i].key, wrong[i].text, why);
+        if (strstr(why, wrong[i].expected) == NULL)
+            fail_msg("%s '%s': %s", wrong[i].key, wrong[i].text, why);
     }
     struct run_spec untouched = {0};
     assert_memory_equal(&run, &untouched, sizeof run);
@@ -269,8 +283,8 @@ static void the_manual_has_every_key(void **state)
     for (int i = 0; i < ntable; i++) {
         for (int j = 0; j < table[i]->nfield; j++) {
             char entry[160];
-            snprintf(entry, sizeof entry, "- `%s%s%s`: ", table[i]->prefix, table[i]->prefix[0] ? "." : "",
-                     table[i]->field[j].key);
+            snprintf(entry, sizeof entry, "- `%s%s%s`: ", table[i]->prefix,
+                     table[i]->prefix[0] ? "." : "", table[i]->field[j].key);
             if (strstr(manual, entry) == NULL) fail_msg("the manual lacks %s", entry);
         }
     }
@@ -283,10 +297,17 @@ static void processors_follow_from_the_topology(void **state)
     static const struct {
         const char *family, *dims;
         int nodes_per_router, processors_per_node, expected;
-    } cases[] = {{"torus", "8x4x4", 1, 1, 128},        {"mesh", "16x16", 1, 1, 256},  {"hypercube", "2", 2, 2, 16},
-                 {"hypercube", "7", 1, 1, 128},        {"bus", "4", 1, 1, 4},         {"crossbar", "8", 1, 2, 16},
-                 {"full-mesh", "5", 2, 1, 10},         {"fat-tree", "4 3", 1, 1, 64}, {"fat-tree", "32 2", 1, 4, 4096},
-                 {"dragonfly", "4 16 8 9", 1, 1, 576}, {"graph", "6", 1, 2, 12}};
+    } cases[] = {{"torus", "8x4x4", 1, 1, 128},
+                 {"mesh", "16x16", 1, 1, 256},
+                 {"hypercube", "2", 2, 2, 16},
+                 {"hypercube", "7", 1, 1, 128},
+                 {"bus", "4", 1, 1, 4},
+                 {"crossbar", "8", 1, 2, 16},
+                 {"full-mesh", "5", 2, 1, 10},
+                 {"fat-tree", "4 3", 1, 1, 64},
+                 {"fat-tree", "32 2", 1, 4, 4096},
+                 {"dragonfly", "4 16 8 9", 1, 1, 576},
+                 {"graph", "6", 1, 2, 12}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct run_spec run = {0};
         run.machine.topology.nodes_per_router = cases[i].nodes_per_router;

@@ -1,4 +1,5 @@
-/* test_identity.c - what identifies a run: every setting that is not its default, and nothing else. */
+/* test_identity.c - what identifies a run: every setting that is not its default, and nothing
+ * else. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -46,7 +47,8 @@ static bool change(const struct field_table *t, const struct field *f, struct ru
     void *base = (char *)run + t->offset;
     field_print(f, base, &before);
     random_value(f, random, text, sizeof text);
-    if (!field_set(f, base, text, arena, why, (int)sizeof why)) fail_msg("%s: %s: %s", f->key, text, why);
+    if (!field_set(f, base, text, arena, why, (int)sizeof why))
+        fail_msg("%s: %s: %s", f->key, text, why);
     field_print(f, base, &after);
     bool changed = strcmp(before.s ? before.s : "", after.s ? after.s : "") != 0;
     text_free(&before);
@@ -73,8 +75,8 @@ static void a_change_of_any_setting_changes_the_identity(void **state)
     struct random random = random_make(3, 0, 0);
     struct run_spec run, changed;
     set_defaults(&run);
-    /* From the defaults on, every change stays: identities of runs far from the defaults are told apart, too.
-     */
+    /* From the defaults on, every change stays: identities of runs far from the defaults are told
+     * apart, too. */
     for (int round = 0; round < 8; round++)
         for (int i = 0; i < n; i++)
             for (int j = 0; j < table[i]->nfield; j++) {
@@ -170,8 +172,8 @@ static void add_setting(struct field_table *last, struct field *rows, int at)
         if (i != at && rows[i].count) rows[i].count += kernel_table.offset;
 }
 
-static void identity_of(const struct field_table *const *table, int n, const void *base, char hex[65],
-                        struct text *own)
+static void identity_of(const struct field_table *const *table, int n, const void *base,
+                        char hex[65], struct text *own)
 {
     struct text full = {0};
     struct identity *x = identity_create(table, n);
@@ -223,7 +225,8 @@ static void the_order_of_tables_and_rows_is_no_part_of_it(void **state)
     struct field_table mixed = kernel_table;
     set_defaults(&run);
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < table[i]->nfield; j += 3) change(table[i], &table[i]->field[j], &run, &random);
+        for (int j = 0; j < table[i]->nfield; j += 3)
+            change(table[i], &table[i]->field[j], &run, &random);
     for (int j = 0; j < mixed.nfield; j++) rows[j] = kernel_table.field[mixed.nfield - 1 - j];
     mixed.field = rows;
     for (int i = 0; i < n; i++) turned[i] = table[i == 0 ? 0 : n - i];
@@ -270,7 +273,8 @@ static void a_configuration_reads_back_to_the_same_identity(void **state)
         run_identify(&again, arena);
         assert_string_equal(again.config_hash, run.config_hash);
         for (int i = 0; i < n; i++)
-            for (int j = 0; j < table[i]->nfield; j++) change(table[i], &table[i]->field[j], &run, &random);
+            for (int j = 0; j < table[i]->nfield; j++)
+                change(table[i], &table[i]->field[j], &run, &random);
     }
     /* What an older program did not know has its default; what this one does not know is told. */
     set_defaults(&run);
@@ -298,8 +302,9 @@ static void list_defaults(struct text *out)
         }
 }
 
-/* A default that changes would give runs of then the identity of other runs of now. New settings are no harm:
- * the file is then written anew from what this test leaves in the folder where it runs. */
+/* A default that changes would give runs of then the identity of other runs of now. New settings
+ * are no harm: the file is then written anew from what this test leaves in the folder where it
+ * runs. */
 static void defaults_are_those_that_stored_identities_rest_on(void **state)
 {
     (void)state;
@@ -314,9 +319,10 @@ static void defaults_are_those_that_stored_identities_rest_on(void **state)
         assert_non_null(out);
         fputs(now.s, out);
         fclose(out);
-        fail_msg("tests/golden/defaults.txt is not defaults.txt.new. Where a default changed: raise "
-                 "STORE_VERSION, so "
-                 "that the identities of stored runs are computed anew. Then copy it.");
+        fail_msg(
+            "tests/golden/defaults.txt is not defaults.txt.new. Where a default changed: raise "
+            "STORE_VERSION, so that the identities of stored runs are computed anew. Then copy "
+            "it.");
     }
     text_free(&now);
     text_free(&then);

@@ -63,7 +63,8 @@ static void many_or_long_changes_stay_told_apart(void **state)
     assert_string_not_equal(a.s, b.s);
     text_free(&a);
     text_free(&b);
-    run_label_changed("x", "{\"software.collectives\": \"a very long text that no legend has room for\"}", &a);
+    run_label_changed(
+        "x", "{\"software.collectives\": \"a very long text that no legend has room for\"}", &a);
     assert_non_null(strstr(a.s, "x, collectives changed ("));
     text_free(&a);
 }

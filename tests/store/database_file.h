@@ -1,4 +1,5 @@
-/* database_file.h - a database file of a test: its folder, and SQL on it behind the program's back. */
+/* database_file.h - a database file of a test: its folder, and SQL on it behind the program's
+ * back. */
 #ifndef TESTS_STORE_DATABASE_FILE_H
 #define TESTS_STORE_DATABASE_FILE_H
 

@@ -84,9 +84,8 @@ static void a_view_in_the_place_of_a_table_is_refused(void **state)
 {
     refused(*state,
             "DROP TABLE span; CREATE VIEW span AS SELECT 1 AS run_id, random() AS span, random() "
-            "AS rank, random() AS"
-            " stage, 'compute' AS kind, random() AS begin_ps, random() AS end_ps, 0 AS peer, 0 AS "
-            "bytes, 0 AS message",
+            "AS rank, random() AS stage, 'compute' AS kind, random() AS begin_ps, random() AS "
+            "end_ps, 0 AS peer, 0 AS bytes, 0 AS message",
             false, "view 'span' is not the one that mimdsim makes");
 }
 
@@ -135,8 +134,7 @@ static void rows_that_break_their_rules_are_refused_by_table_and_column(void **s
              "name = 'span'");
     refused(f,
             "UPDATE sqlite_schema SET sql = replace(sql, 'verdict        TEXT NOT NULL', 'verdict "
-            "TEXT') WHERE name = "
-            "'check_point'",
+            "TEXT') WHERE name = 'check_point'",
             false, "is not the one that mimdsim makes");
 }
 
@@ -170,16 +168,14 @@ static void sums_go_on_beyond_64_bits(void **state)
     asked(s, "WITH t(x) AS (VALUES (1), (NULL), (2.5), ('3')) SELECT sum(x) FROM t", "6.5");
     asked(s,
           "WITH t(x) AS (VALUES (1), (2), (3)) SELECT group_concat(y) FROM (SELECT sum(x) OVER "
-          "(ORDER BY x ROWS 1"
-          " PRECEDING) AS y FROM t)",
+          "(ORDER BY x ROWS 1 PRECEDING) AS y FROM t)",
           "1,3,5");
     store_close(s);
     /* 4096 ranks for 51 minutes: the view tells it exactly */
     do_to(f, "UPDATE run SET P = 4096, makespan_ps = 3057537485410955; DELETE FROM stage WHERE "
-             "stage > 0;"
-             "UPDATE stage SET compute_sum_ps = 9000000000000000000, total_sum_ps = "
-             "9000000000000000000, send_sum_ps ="
-             " 3523673540243271681, recv_sum_ps = 0, wait_sum_ps = 0, contention_sum_ps = 0");
+             "stage > 0;UPDATE stage SET compute_sum_ps = 9000000000000000000, total_sum_ps = "
+             "9000000000000000000, send_sum_ps = 3523673540243271681, recv_sum_ps = 0, wait_sum_ps "
+             "= 0, contention_sum_ps = 0");
     s = store_open(f->path, STORE_READ, &f->e);
     if (s == NULL) fail_msg("%s", f->e.text);
     asked(s, "SELECT difference_ps FROM v_accounting", "1");

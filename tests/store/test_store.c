@@ -1,4 +1,5 @@
-/* test_store.c - what is put into the database comes out of it, whole and once; views compute what they say. */
+/* test_store.c - what is put into the database comes out of it, whole and once; views compute what
+ * they say. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -88,30 +89,36 @@ static void a_run_comes_back_as_it_was_put(void **state)
     put(f, &spec, &r);
     assert_string_equal(cell(f, "SELECT config_hash FROM run"), spec.config_hash);
     assert_string_equal(cell(f, "SELECT config_text FROM run"), spec.config_text);
-    assert_string_equal(cell(f, "SELECT status || '|' || text FROM run"), "invalid|tau is wrong: 'x' \"y\" \xc3\xa9");
+    assert_string_equal(cell(f, "SELECT status || '|' || text FROM run"),
+                        "invalid|tau is wrong: 'x' \"y\" \xc3\xa9");
     assert_string_equal(cell(f, "SELECT digest FROM run"), "fedcba9876543210");
-    assert_string_equal(cell(f, "SELECT left_out FROM run"), "base terms: the base is fixed; joints: all are fixed");
-    assert_string_equal(cell(f, "SELECT group_concat(what||'|'||why||'|'||class||'|'||ifnull(bound, 'NULL'), '; ')"
-                                " FROM (SELECT * FROM run_omission ORDER BY what)"),
-                        "base terms|the base is fixed|exact|NULL; joints|all are fixed|bounded|0.25");
+    assert_string_equal(cell(f, "SELECT left_out FROM run"),
+                        "base terms: the base is fixed; joints: all are fixed");
+    assert_string_equal(
+        cell(f, "SELECT group_concat(what||'|'||why||'|'||class||'|'||ifnull(bound, 'NULL'), '; ')"
+                " FROM (SELECT * FROM run_omission ORDER BY what)"),
+        "base terms|the base is fixed|exact|NULL; joints|all are fixed|bounded|0.25");
     assert_string_equal(
         cell(f, "SELECT machine||level||topology||kernel||formulation||solver||operators||precision"
                 "||model||base||joint||n||'/'||P||'/'||rep FROM run"),
-        "t3e-300linkcrossbardynamicspaperpcr-symmetricstructureddoubleserial-chainfixedrevolute128/128/3");
+        "t3e-300linkcrossbardynamicspaperpcr-symmetric"
+        "structureddoubleserial-chainfixedrevolute128/128/3");
     assert_int_equal(number(f, "SELECT makespan_ps FROM run"), r.makespan_ps);
     assert_int_equal(number(f, "SELECT count(*) FROM rank_stage"), 128 * 7);
     assert_int_equal(number(f, "SELECT count(*) FROM stage"), 7);
     assert_int_equal(number(f, "SELECT recv_ps FROM rank_stage WHERE rank = 5 AND stage = 2"),
                      r.stage[5 * 7 + 2].recv_ps);
-    /* The text that holds them is what SQLite itself would make of the rows, so both are one thing after a merge or an
-     * upgrade. */
+    /* The text that holds them is what SQLite itself would make of the rows, so both are one thing
+     * after a merge or an upgrade. */
     assert_int_equal(
-        number(f, "SELECT (SELECT entries FROM rank_times) = (SELECT json_group_array(json_array(rank, stage,"
-                  " compute_ps, send_ps, recv_ps, wait_ps, contention_ps, messages, sent_bytes, flops))"
-                  " FROM rank_stage)"), 1);
+        number(f, "SELECT (SELECT entries FROM rank_times) = (SELECT "
+                  "json_group_array(json_array(rank, stage, compute_ps, send_ps, recv_ps, wait_ps, "
+                  "contention_ps, messages, sent_bytes, flops)) FROM rank_stage)"),
+        1);
     assert_string_equal(cell(f, "SELECT name FROM stage WHERE stage = 6"), "CFA[3]");
-    assert_string_equal(cell(f, "SELECT quantity || reference || passed FROM error_check WHERE ordinal = 1"),
-                        "qddaba1");
+    assert_string_equal(
+        cell(f, "SELECT quantity || reference || passed FROM error_check WHERE ordinal = 1"),
+        "qddaba1");
     assert_string_equal(cell(f, "SELECT created_utc LIKE '20__-__-__T__:__:__Z' FROM run"), "1");
 }
 
@@ -131,8 +138,10 @@ static void provenance_names_this_build(void **state)
 static void putting_a_run_again_replaces_it(void **state)
 {
     struct fixture *f = *state;
-    static const char *const table[] = {"run", "run_setting", "stage", "rank_stage", "baseline", "error_check", "span"};
-    struct run_spec spec = made_spec(f->a, "t3e-300", 8, 8, 0), other = made_spec(f->a, "t3e-300", 8, 8, 1);
+    static const char *const table[] = {"run",      "run_setting", "stage", "rank_stage",
+                                        "baseline", "error_check", "span"};
+    struct run_spec spec = made_spec(f->a, "t3e-300", 8, 8, 0),
+                    other = made_spec(f->a, "t3e-300", 8, 8, 1);
     struct run_result r = made_result(f->a, &spec);
     made_spans(&r, f->a);
     put(f, &other, &r);
@@ -158,7 +167,8 @@ static void putting_a_run_again_replaces_it(void **state)
 static void only_a_good_run_need_not_run_again(void **state)
 {
     struct fixture *f = *state;
-    struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0), next = made_spec(f->a, "t3e-300", 4, 4, 1);
+    struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0),
+                    next = made_spec(f->a, "t3e-300", 4, 4, 1);
     struct run_result r = made_result(f->a, &spec);
     assert_false(store_has(f->s, &spec));
     static const enum run_status bad[] = {RUN_INVALID, RUN_DEADLOCK, RUN_FAILED};
@@ -189,11 +199,15 @@ static void a_sweep_can_be_pivoted_by_what_it_varies(void **state)
         struct run_result r = made_result(f->a, &spec);
         put(f, &spec, &r);
     }
-    assert_string_equal(cell(f, "SELECT group_concat(key, ',') FROM (SELECT DISTINCT key FROM v_itervar ORDER BY key)"),
-                        "machine.network.link.bandwidth,model.n,ranks");
-    assert_string_equal(cell(f, "SELECT group_concat(value, ', ') FROM (SELECT value FROM v_itervar WHERE key = "
-                                "'machine.network.link.bandwidth' ORDER BY run_id)"),
-                        "480 MB/s, 480 MB/s, 960 MB/s");
+    assert_string_equal(
+        cell(
+            f,
+            "SELECT group_concat(key, ',') FROM (SELECT DISTINCT key FROM v_itervar ORDER BY key)"),
+        "machine.network.link.bandwidth,model.n,ranks");
+    assert_string_equal(
+        cell(f, "SELECT group_concat(value, ', ') FROM (SELECT value FROM v_itervar WHERE key = "
+                "'machine.network.link.bandwidth' ORDER BY run_id)"),
+        "480 MB/s, 480 MB/s, 960 MB/s");
     assert_int_equal(number(f, "SELECT count(*) FROM setting WHERE key = 'kernel.solver'"), 1);
 }
 
@@ -234,8 +248,10 @@ static void stages_hold_sums_and_extremes_of_all_ranks(void **state)
             if (c > most) most = c;
         }
         char sql[160];
-        snprintf(sql, sizeof sql, "SELECT compute_sum_ps = %lld AND compute_max_ps = %lld FROM stage WHERE stage = %d",
-                 (long long)sum, (long long)most, i);
+        snprintf(
+            sql, sizeof sql,
+            "SELECT compute_sum_ps = %lld AND compute_max_ps = %lld FROM stage WHERE stage = %d",
+            (long long)sum, (long long)most, i);
         assert_string_equal(cell(f, sql), "1");
     }
     assert_close(number(f, "SELECT sum(total_mean_ps) FROM v_stage"), (double)r.makespan_ps, 1.0);
@@ -252,14 +268,17 @@ static void accounting_is_exact_and_a_lost_picosecond_is_seen(void **state)
     struct run_spec spec = made_spec(f->a, "t3e-300", 600, 600, 0);
     struct run_result r = made_result(f->a, &spec);
     put(f, &spec, &r);
-    assert_string_equal(cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "0,0");
+    assert_string_equal(
+        cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "0,0");
     r.stage[123 * 7 + 4].send_ps -= 1;
     r.stage[124 * 7 + 4].send_ps += 1;
     put(f, &spec, &r);
-    assert_string_equal(cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "0,1");
+    assert_string_equal(
+        cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "0,1");
     r.stage[124 * 7 + 4].send_ps -= 1;
     put(f, &spec, &r);
-    assert_string_equal(cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "-1,1");
+    assert_string_equal(
+        cell(f, "SELECT difference_ps || ',' || accounting_error_ps FROM v_accounting"), "-1,1");
 }
 
 static void numbers_that_are_not_finite_are_null_and_fail(void **state)
@@ -271,7 +290,8 @@ static void numbers_that_are_not_finite_are_null_and_fail(void **state)
     r.error[1].relative = INFINITY;
     r.host_s = -INFINITY;
     put(f, &spec, &r);
-    assert_int_equal(number(f, "SELECT count(*) FROM v_errors WHERE relative_error IS NULL AND passed = 0"), 2);
+    assert_int_equal(
+        number(f, "SELECT count(*) FROM v_errors WHERE relative_error IS NULL AND passed = 0"), 2);
     assert_string_equal(cell(f, "SELECT host_s FROM run"), "NULL");
 }
 
@@ -294,17 +314,22 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
     r.nlink = 20000;
     r.link = TAKE(f->a, r.nlink, struct link_load);
     for (int i = 0; i < r.nlink; i++)
-        r.link[i] = (struct link_load){i - 1, i % 50 ? i : -1, i % 50 ? -1 : i, 1, 8, 10, (int64_t)i * 7919 % 20000};
+        r.link[i] = (struct link_load){i - 1, i % 50 ? i : -1,          i % 50 ? -1 : i, 1, 8,
+                                       10,    (int64_t)i * 7919 % 20000};
     made_spans(&r, f->a);
     put(f, &spec, &r);
     assert_int_equal(number(f, "SELECT count(*) FROM link_load"), 16384);
     assert_int_equal(number(f, "SELECT min(queue_ps) FROM link_load"), 20000 - 16384);
     assert_int_equal(number(f, "SELECT links FROM run"), 20000);
-    assert_string_equal(cell(f, "SELECT to_router IS NULL AND node = 50 FROM link_load WHERE link = 50"), "1");
+    assert_string_equal(
+        cell(f, "SELECT to_router IS NULL AND node = 50 FROM link_load WHERE link = 50"), "1");
     assert_int_equal(number(f, "SELECT count(*) FROM span"), r.nspan);
-    assert_int_equal(number(f, "SELECT count(*) FROM span a JOIN span b USING (run_id, message) WHERE a.kind = 'send' "
-                               "AND b.kind = 'recv' AND a.peer = b.rank AND b.peer = a.rank"),
-                     4 * 7);
+    assert_int_equal(
+        number(
+            f,
+            "SELECT count(*) FROM span a JOIN span b USING (run_id, message) WHERE a.kind = 'send' "
+            "AND b.kind = 'recv' AND a.peer = b.rank AND b.peer = a.rank"),
+        4 * 7);
     r.nspan = 20001;
     put(f, &spec, &r);
     assert_int_equal(number(f, "SELECT count(*) FROM span"), 0);
@@ -315,8 +340,10 @@ static void every_view_answers_on_an_empty_database(void **state)
     struct fixture *f = *state;
     static const char *const view[] = {"v_speedup",    "v_stage",    "v_accounting", "v_errors",
                                        "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
-                                       "v_provenance", "v_link_top", "v_repetition", "v_machine_state",
-                                       "v_shown", "rank_stage", "v_label", "v_run", "v_known_error"};
+                                       "v_provenance", "v_link_top", "v_repetition",
+                                       "v_machine_state",
+                                       "v_shown", "rank_stage", "v_label", "v_run",
+                                       "v_known_error"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);
@@ -324,23 +351,28 @@ static void every_view_answers_on_an_empty_database(void **state)
     }
     assert_int_equal(number(f, "SELECT count(*) FROM sqlite_schema WHERE type = 'view'"),
                      (double)(sizeof view / sizeof *view));
-    assert_int_equal(number(f, "SELECT count(*) FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND "
-                               "strict = 0 AND name NOT LIKE 'sqlite_%'"),
-                     0);
+    assert_int_equal(
+        number(
+            f,
+            "SELECT count(*) FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND "
+            "strict = 0 AND name NOT LIKE 'sqlite_%'"),
+        0);
 }
 
 static void generic_rows_replace_their_like_and_obey_the_schema(void **state)
 {
     struct fixture *f = *state;
-    static const char *const name[] = {"suite", "subject",        "quantity", "at",      "unit",  "reference",
-                                       "value", "relative_error", "class",    "verdict", "source"};
-    struct store_value v[] = {store_text("closed"), store_text("ring"), store_text("time"),   store_text("P=8"),
-                              store_text("s"),      store_real(1.5),    store_real(NAN),      store_real(0.25),
-                              store_text("exact"),  store_text("pass"), store_text("by hand")};
+    static const char *const name[] = {"suite", "subject",   "quantity", "at",
+                                       "unit",  "reference", "value",    "relative_error",
+                                       "class", "verdict",   "source"};
+    struct store_value v[] = {store_text("closed"), store_text("ring"),   store_text("time"),
+                              store_text("P=8"),    store_text("s"),      store_real(1.5),
+                              store_real(NAN),      store_real(0.25),     store_text("exact"),
+                              store_text("pass"),   store_text("by hand")};
     for (int i = 0; i < 2; i++) assert_true(store_insert(f->s, "check_point", 11, name, v, &f->e));
-    assert_string_equal(
-        cell(f, "SELECT count(*) || ifnull(max(value), ' null') || max(relative_error) FROM check_point"),
-        "1 null0.25");
+    assert_string_equal(cell(f, "SELECT count(*) || ifnull(max(value), ' null') || "
+                                "max(relative_error) FROM check_point"),
+                        "1 null0.25");
     v[9] = store_text("perhaps");
     assert_false(store_insert(f->s, "check_point", 11, name, v, &f->e));
     assert_int_equal(f->e.kind, ERR_DATA);
@@ -370,13 +402,15 @@ static void a_transaction_is_kept_or_forgotten_as_a_whole(void **state)
 static void a_run_that_fails_half_way_leaves_no_row(void **state)
 {
     struct fixture *f = *state;
-    struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0), next = made_spec(f->a, "t3e-300", 4, 4, 1);
+    struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0),
+                    next = made_spec(f->a, "t3e-300", 4, 4, 1);
     struct run_result r = made_result(f->a, &spec);
     put(f, &next, &r);
     sqlite3 *db;
     assert_int_equal(sqlite3_open(f->path, &db), SQLITE_OK);
     assert_int_equal(sqlite3_exec(db,
-                                  "CREATE UNIQUE INDEX stop ON error_check (run_id) WHERE run_id > 1",
+                                  "CREATE UNIQUE INDEX stop ON error_check (run_id) WHERE run_id > "
+                                  "1",
                                   NULL, NULL, NULL),
                      SQLITE_OK);
     assert_false(store_put(f->s, &spec, NULL, &r, &f->e));
@@ -398,7 +432,8 @@ static void commits_go_to_the_log_without_waiting_for_the_disk(void **state)
     assert_string_equal(cell(f, "PRAGMA foreign_keys"), "1");
 }
 
-static bool count_kinds(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool count_kinds(void *context, int ncolumn, const char *const *name,
+                        const struct store_value *value)
 {
     int *seen = context;
     assert_int_equal(ncolumn, 4);
@@ -421,10 +456,12 @@ static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **stat
     char answer[8192];
     assert_true(store_put(passing, &spec, NULL, &r, &f->e));
     assert_true(store_has(passing, &spec));
-    assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell, answer, &f->e));
+    assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell,
+                             answer, &f->e));
     assert_string_equal(answer, "1");
-    assert_true(store_select(passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)",
-                             0, NULL, take_cell, answer, &f->e));
+    assert_true(store_select(
+        passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)", 0,
+        NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "0");
     store_close(passing);
     assert_int_equal(access("nowhere", F_OK), -1);
@@ -435,8 +472,9 @@ static void queries_keep_the_kinds_of_values_and_bind_parameters(void **state)
     struct fixture *f = *state;
     int seen[5] = {0};
     const char *param[] = {"x'; DROP TABLE run; --"};
-    assert_true(store_query(f->s, "SELECT 1 AS a, 2.5 AS b, NULL AS c, ?1 AS d UNION ALL SELECT 2, 1.0, 3, 'y'", 1,
-                            param, count_kinds, count_kinds, seen, &f->e));
+    assert_true(store_query(
+        f->s, "SELECT 1 AS a, 2.5 AS b, NULL AS c, ?1 AS d UNION ALL SELECT 2, 1.0, 3, 'y'", 1,
+        param, count_kinds, count_kinds, seen, &f->e));
     assert_int_equal(seen[STORE_INT], 3);
     assert_int_equal(seen[STORE_REAL], 2);
     assert_int_equal(seen[STORE_NULL], 1);

@@ -1,4 +1,5 @@
-/* test_store_faults.c - databases that cannot be used, each through a real file: what is said, what is left behind. */
+/* test_store_faults.c - databases that cannot be used, each through a real file: what is said, what
+ * is left behind. */
 #include <fcntl.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -49,7 +50,8 @@ static void fill(const char *path, int count)
     arena_destroy(a);
 }
 
-static bool take_count(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool take_count(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
 {
     (void)ncolumn;
     (void)name;
@@ -65,18 +67,21 @@ static int count_runs(const char *path)
     if (s == NULL) fail_msg("%s", e.text);
     assert_true(store_select(s, "SELECT count(*) FROM run", 0, NULL, take_count, &count, &e));
     int bad = -1;
-    assert_true(store_select(s, "SELECT count(*) FROM pragma_integrity_check WHERE integrity_check <> 'ok'", 0, NULL,
-                             take_count, &bad, &e));
+    assert_true(
+        store_select(s, "SELECT count(*) FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
+                     0, NULL, take_count, &bad, &e));
     assert_int_equal(bad, 0);
     store_close(s);
     return count;
 }
 
-static void expect(struct fixture *f, const char *path, enum store_mode mode, enum err_kind kind, const char *says)
+static void expect(struct fixture *f, const char *path, enum store_mode mode, enum err_kind kind,
+                   const char *says)
 {
     err_clear(&f->e);
     assert_null(store_open(path, mode, &f->e));
-    if (f->e.kind != kind || !strstr(f->e.text, says)) fail_msg("kind %d, expected %d: %s", f->e.kind, kind, f->e.text);
+    if (f->e.kind != kind || !strstr(f->e.text, says))
+        fail_msg("kind %d, expected %d: %s", f->e.kind, kind, f->e.text);
 }
 
 static void a_missing_database_is_no_input_and_is_not_made(void **state)
@@ -93,7 +98,8 @@ static void a_missing_folder_cannot_be_written_to(void **state)
     expect(f, scratch_path(path, sizeof path, f->folder, "none/t.db"), STORE_WRITE, ERR_CREATE,
            "No such file or directory");
     write_file(f->path, "");
-    expect(f, scratch_path(path, sizeof path, f->folder, "t.db/t.db"), STORE_WRITE, ERR_CREATE, "Not a directory");
+    expect(f, scratch_path(path, sizeof path, f->folder, "t.db/t.db"), STORE_WRITE, ERR_CREATE,
+           "Not a directory");
 }
 
 static void a_folder_is_no_database(void **state)
@@ -180,12 +186,12 @@ static int without_root(void (*body)(struct fixture *), struct fixture *f)
 }
 
 /* In a child an assertion of cmocka is of no use: leave with a number that says where. */
-#define REQUIRE(cond)                                                                                                  \
-    do {                                                                                                               \
-        if (!(cond)) {                                                                                                 \
-            fprintf(stderr, "line %d: %s: %s\n", __LINE__, #cond, f->e.text);                                          \
-            _exit(1);                                                                                                  \
-        }                                                                                                              \
+#define REQUIRE(cond)                                                                              \
+    do {                                                                                           \
+        if (!(cond)) {                                                                             \
+            fprintf(stderr, "line %d: %s: %s\n", __LINE__, #cond, f->e.text);                      \
+            _exit(1);                                                                              \
+        }                                                                                          \
     } while (0)
 
 static void open_read_only(struct fixture *f)
@@ -197,7 +203,8 @@ static void open_read_only(struct fixture *f)
     err_clear(&f->e);
     struct store *s = store_open(f->path, STORE_READ, &f->e);
     REQUIRE(s != NULL);
-    REQUIRE(store_select(s, "SELECT count(*) FROM run", 0, NULL, take_count, &count, &f->e) && count == 1);
+    REQUIRE(store_select(s, "SELECT count(*) FROM run", 0, NULL, take_count, &count, &f->e) &&
+            count == 1);
     store_close(s);
 }
 
@@ -297,7 +304,8 @@ static void kill_9_loses_at_most_the_run_in_flight(void **state)
 {
     struct fixture *f = *state;
     for (int round = 0; round < 10; round++) {
-        unlink(f->path); /* the log of the killed campaign stays behind, as when a user removes the database */
+        /* the log of the killed campaign stays behind, as when a user removes the database */
+        unlink(f->path);
         int pipes[2], last = -1, i;
         assert_int_equal(pipe(pipes), 0);
         pid_t child = fork();
@@ -381,7 +389,9 @@ static void what_a_crash_left_beside_is_removed_and_nothing_else(void **state)
     write_file(scratch_path(left, sizeof left, f->folder, "t.db.new-aB3dE6.part"), "half");
     write_file(scratch_path(notes, sizeof notes, f->folder, "t.db.new-my-notes.part"), "mine");
     write_file(scratch_path(victim, sizeof victim, f->folder, "victim"), "precious");
-    assert_int_equal(symlink(victim, scratch_path(link_like, sizeof link_like, f->folder, "t.db.new-abcdef.part")), 0);
+    assert_int_equal(symlink(victim, scratch_path(link_like, sizeof link_like, f->folder,
+                                                  "t.db.new-abcdef.part")),
+                     0);
     write_file(scratch_path(held, sizeof held, f->folder, "t.db.new-123456.part"), "being written");
     int file = open(held, O_RDONLY);
     assert_int_equal(flock(file, LOCK_EX), 0); /* as the process that writes it does */
@@ -406,7 +416,8 @@ static void a_new_database_goes_through_no_link_and_has_the_usual_mode(void **st
     struct fixture *f = *state;
     char victim[256], name[300];
     write_file(scratch_path(victim, sizeof victim, f->folder, "victim"), "precious");
-    snprintf(name, sizeof name, "%s.new-%ld", f->path, (long)getpid()); /* a name that can be foreseen */
+    snprintf(name, sizeof name, "%s.new-%ld", f->path,
+             (long)getpid()); /* a name that can be foreseen */
     assert_int_equal(symlink(victim, name), 0);
     mode_t mask = umask(027);
     fill(f->path, 1);

@@ -1,5 +1,5 @@
-/* test_upgrade.c - databases of older versions: upgraded whole or not at all, read without a change, nothing
- * lost. */
+/* test_upgrade.c - databases of older versions: upgraded whole or not at all, read without a
+ * change, nothing lost. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -24,8 +24,8 @@
 #include "spec/identity.h"
 #include "store/store.h"
 
-/* The first value of a query on the file as it is, without this program; in a buffer that the next call
- * overwrites. */
+/* The first value of a query on the file as it is, without this program; in a buffer that the next
+ * call overwrites. */
 static const char *value(const char *path, const char *query)
 {
     static char buffer[4096];
@@ -83,23 +83,23 @@ static struct store *open_or_fail(struct fixture *f, enum store_mode mode)
 
 /* All rows of a table, one text; columns that both versions have. */
 static const char rows_of_runs[] =
-    "SELECT group_concat(id || ' ' || seed || ' ' || rep || ' ' || level || ' ' || n || ' ' || P || ' ' || "
-    "makespan_ps ||"
-    " ' ' || digest || ' ' || residual || ' ' || ifnull(level_asked, '-') || ' ' || created_utc, ';') FROM"
-    " (SELECT * FROM run ORDER BY id)";
+    "SELECT group_concat(id || ' ' || seed || ' ' || rep || ' ' || level || ' ' || n || ' ' || P "
+    "|| ' ' || makespan_ps || ' ' || digest || ' ' || residual || ' ' || ifnull(level_asked, '-') "
+    "|| ' ' || created_utc, ';') FROM (SELECT * FROM run ORDER BY id)";
 static const char count_of_rows[] =
-    "SELECT (SELECT count(*) FROM stage) || ' ' || (SELECT sum(total_sum_ps) FROM stage) || ' ' ||"
-    " (SELECT count(*) FROM rank_stage) || ' ' || (SELECT count(*) FROM baseline) || ' ' ||"
-    " (SELECT count(*) FROM error_check) || ' ' || (SELECT count(*) FROM run_omission) || ' ' ||"
-    " (SELECT count(*) FROM run_setting) || ' ' || (SELECT count(*) FROM ladder) || ' ' || (SELECT count(*) "
+    "SELECT (SELECT count(*) FROM stage) || ' ' || (SELECT sum(total_sum_ps) FROM stage) || ' ' || "
+    "(SELECT count(*) FROM rank_stage) || ' ' || (SELECT count(*) FROM baseline) || ' ' || (SELECT "
+    "count(*) FROM error_check) || ' ' || (SELECT count(*) FROM run_omission) || ' ' || (SELECT "
+    "count(*) FROM run_setting) || ' ' || (SELECT count(*) FROM ladder) || ' ' || (SELECT count(*) "
     "FROM build)";
 
 /* Every value with weights of its own, in the order of the rows. */
 static const char sums_of_ranks[] =
-    "SELECT group_concat(x, ';') FROM (SELECT run_id || ' ' || sum(rank * 3 + stage * 5) || ' ' ||"
-    " sum(rank * compute_ps) || ' ' || sum(rank * send_ps) || ' ' || sum(stage * recv_ps) || ' ' || sum(rank * wait_ps)"
-    " || ' ' || sum(contention_ps) || ' ' || sum(rank * messages) || ' ' || sum(stage * sent_bytes) || ' ' ||"
-    " sum(rank * flops) AS x FROM rank_stage GROUP BY run_id ORDER BY run_id)";
+    "SELECT group_concat(x, ';') FROM (SELECT run_id || ' ' || sum(rank * 3 + stage * 5) || ' ' || "
+    "sum(rank * compute_ps) || ' ' || sum(rank * send_ps) || ' ' || sum(stage * recv_ps) || ' ' || "
+    "sum(rank * wait_ps) || ' ' || sum(contention_ps) || ' ' || sum(rank * messages) || ' ' || "
+    "sum(stage * sent_bytes) || ' ' || sum(rank * flops) AS x FROM rank_stage GROUP BY run_id "
+    "ORDER BY run_id)";
 
 static void nothing_is_lost(void **state)
 {
@@ -125,8 +125,11 @@ static void nothing_is_lost(void **state)
         is(f->path, "SELECT count(*) FROM pragma_foreign_key_check", "0");
         is(f->path, "SELECT count(*) FROM sqlite_schema WHERE name LIKE 'older%'", "0");
         is(f->path, "SELECT count(*) FROM run_older", "0");
-        is(f->path, "SELECT count(*) FROM run WHERE label <> machine OR length(machine_key) <> 16", "0");
-        is(f->path, "SELECT number || unit FROM setting WHERE key = 'machine.network.hop_latency' AND value = '60 ns'",
+        is(f->path, "SELECT count(*) FROM run WHERE label <> machine OR length(machine_key) <> 16",
+           "0");
+        is(f->path,
+           "SELECT number || unit FROM setting WHERE key = 'machine.network.hop_latency' AND value "
+           "= '60 ns'",
            "6.0e-08s");
         is(f->path, "SELECT value FROM meta WHERE key = 'rank_rows_limit'", "256");
         is(f->path, "SELECT group_concat(DISTINCT state) FROM v_machine_state",
@@ -199,7 +202,8 @@ static void identities_are_those_that_runs_have_now(void **state)
         assert_true(store_has(s, &spec));
         store_close(s);
     }
-    is(f->path, "SELECT value FROM v_setting WHERE run_id = 5 AND key = 'machine.network.level'", "loggp");
+    is(f->path, "SELECT value FROM v_setting WHERE run_id = 5 AND key = 'machine.network.level'",
+       "loggp");
     is(f->path, "SELECT count(*) - count(DISTINCT key) FROM v_setting WHERE run_id = 5", "0");
     arena_destroy(a);
 }
@@ -209,9 +213,10 @@ static void runs_that_nobody_can_describe_any_more_are_kept_and_marked(void **st
     struct fixture *f = *state;
     make_old(f, 4);
     char hash[65], same[65];
-    sql(f->path, "UPDATE run SET config_text = config_text || 'kernel.colour = red' || char(10) WHERE id = 2;"
-                 "UPDATE run SET config_text = replace(config_text, 'seed = 1', 'seed = none') WHERE id = 3;"
-                 "UPDATE run SET config_text = (SELECT config_text FROM run WHERE id = 1) WHERE id = 4");
+    sql(f->path, "UPDATE run SET config_text = config_text || 'kernel.colour = red' || char(10) "
+                 "WHERE id = 2;UPDATE run SET config_text = replace(config_text, 'seed = 1', 'seed "
+                 "= none') WHERE id = 3;UPDATE run SET config_text = (SELECT config_text FROM run "
+                 "WHERE id = 1) WHERE id = 4");
     snprintf(hash, sizeof hash, "%s", value(f->path, "SELECT config_hash FROM run WHERE id = 2"));
     snprintf(same, sizeof same, "%s", value(f->path, "SELECT config_hash FROM run WHERE id = 4"));
     struct store *s = open_or_fail(f, STORE_WRITE);
@@ -223,8 +228,10 @@ static void runs_that_nobody_can_describe_any_more_are_kept_and_marked(void **st
     is(f->path, "SELECT group_concat(run_id || ' ' || version, ',') FROM run_older", "2 4,3 4,4 4");
     is(f->path, "SELECT reason FROM run_older WHERE run_id = 2",
        "there is no setting 'kernel.colour' any more");
-    is(f->path, "SELECT reason LIKE 'seed = none: not a seed%' FROM run_older WHERE run_id = 3", "1");
-    is(f->path, "SELECT reason FROM run_older WHERE run_id = 4", "another stored run has the same settings");
+    is(f->path, "SELECT reason LIKE 'seed = none: not a seed%' FROM run_older WHERE run_id = 3",
+       "1");
+    is(f->path, "SELECT reason FROM run_older WHERE run_id = 4",
+       "another stored run has the same settings");
 }
 
 static void reading_changes_nothing(void **state)
@@ -246,7 +253,8 @@ static void a_users_own_tables_and_views_stay(void **state)
     struct fixture *f = *state;
     make_old(f, 4);
     sql(f->path, "CREATE TABLE mine (x); INSERT INTO mine VALUES (7);"
-                 "CREATE VIEW my_runs AS SELECT id + (SELECT x FROM mine) AS y FROM run ORDER BY id");
+                 "CREATE VIEW my_runs AS SELECT id + (SELECT x FROM mine) AS y FROM run ORDER BY "
+                 "id");
     store_close(open_or_fail(f, STORE_WRITE));
     is(f->path, "SELECT y FROM my_runs", "8");
 }
@@ -270,11 +278,14 @@ static void what_cannot_be_upgraded_stays_as_it_was(void **state)
     struct fixture *f = *state;
     char before[65], after[65];
     make_old(f, 4);
-    sql(f->path, "PRAGMA ignore_check_constraints = ON; UPDATE run SET status = 'lost' WHERE id = 3");
-    snprintf(before, sizeof before, "%s", value(f->path, "SELECT count(*) || status FROM run WHERE id = 3"));
+    sql(f->path,
+        "PRAGMA ignore_check_constraints = ON; UPDATE run SET status = 'lost' WHERE id = 3");
+    snprintf(before, sizeof before, "%s",
+             value(f->path, "SELECT count(*) || status FROM run WHERE id = 3"));
     assert_null(store_open(f->path, STORE_WRITE, &f->e));
     assert_int_equal(f->e.kind, ERR_DATA);
-    snprintf(after, sizeof after, "%s", value(f->path, "SELECT count(*) || status FROM run WHERE id = 3"));
+    snprintf(after, sizeof after, "%s",
+             value(f->path, "SELECT count(*) || status FROM run WHERE id = 3"));
     assert_string_equal(before, after);
     is(f->path, "PRAGMA user_version", "4");
     assert_int_not_equal(access(f->kept, F_OK), 0);
@@ -282,8 +293,9 @@ static void what_cannot_be_upgraded_stays_as_it_was(void **state)
     make_old(f, 4);
     sqlite3 *db;
     assert_int_equal(sqlite3_open(f->path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "PRAGMA journal_mode = WAL; BEGIN IMMEDIATE", NULL, NULL, NULL),
-                     SQLITE_OK);
+    assert_int_equal(
+        sqlite3_exec(db, "PRAGMA journal_mode = WAL; BEGIN IMMEDIATE", NULL, NULL, NULL),
+        SQLITE_OK);
     err_clear(&f->e);
     assert_null(store_open(f->path, STORE_WRITE, &f->e));
     assert_int_equal(f->e.kind, ERR_BUSY);
@@ -298,7 +310,8 @@ static void versions_before_the_oldest_are_refused_with_a_way_out(void **state)
     sql(f->path, "PRAGMA user_version = 3");
     assert_null(store_open(f->path, STORE_READ, &f->e));
     assert_non_null(strstr(
-        f->e.text, "has schema version 3, this program knows versions 4 to 7; run its scenarios again"));
+        f->e.text,
+        "has schema version 3, this program knows versions 4 to 7; run its scenarios again"));
 }
 
 /* Upgrade in a child that is killed after `delay` seconds; whether it had ended before. */

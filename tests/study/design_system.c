@@ -12,7 +12,8 @@
 
 enum { ITERATIONS = 120 };
 
-struct design_system design_system_make(const struct model *m, const struct state *s, struct arena *a)
+struct design_system design_system_make(const struct model *m, const struct state *s,
+                                        struct arena *a)
 {
     struct design_system x = {.n = m->nbody, .a = a};
     struct dynamics *d = dynamics_take(m, a);
@@ -33,7 +34,8 @@ struct design_system design_system_make(const struct model *m, const struct stat
                 xform_force(force, &pose->x, w);
                 body_accelerate(&d->body[i - 1], force, moved);
                 subspace_w_transposed(&d->pose[i - 1].s, moved, row);
-                for (int j = 0; j < x.size[i - 1]; j++) x.L[36 * i + k * x.size[i - 1] + j] = -row[j];
+                for (int j = 0; j < x.size[i - 1]; j++)
+                    x.L[36 * i + k * x.size[i - 1] + j] = -row[j];
                 xform_motion(moved, &pose->x, moved);
                 screw_add(own, moved);
             }
@@ -66,7 +68,8 @@ static struct block_tridiag tridiagonal(const struct design_system *x)
     for (int i = 0; i < x->n; i++) {
         const int c = x->size[i];
         for (int r = 0; r < c; r++)
-            for (int k = 0; k <= r; k++) t.D[i * BLOCK_PACKED + packed_index(r, k)] = x->D[36 * i + r * c + k];
+            for (int k = 0; k <= r; k++)
+                t.D[i * BLOCK_PACKED + packed_index(r, k)] = x->D[36 * i + r * c + k];
         memcpy(t.L + i * BLOCK_FULL, x->L + 36 * i, 36 * sizeof(double));
     }
     return t;
@@ -90,7 +93,8 @@ static double *block_factors(const struct design_system *x)
 }
 
 /* v = G v, G^T v, G^-1 v or G^-T v. */
-static void apply_factor(const struct design_system *x, const double *G, bool transposed, bool inverse, double *v)
+static void apply_factor(const struct design_system *x, const double *G, bool transposed,
+                         bool inverse, double *v)
 {
     for (int i = 0; i < x->n; i++) {
         const int c = x->size[i];
@@ -137,7 +141,8 @@ double design_condition(const struct design_system *x, bool scaled)
 {
     struct arena_mark mark = arena_mark(x->a);
     const int n = 6 * x->n;
-    double *v = TAKE(x->a, n, double), *y = TAKE(x->a, n, double), *G = block_factors(x), high = 0, low = 0;
+    double *v = TAKE(x->a, n, double), *y = TAKE(x->a, n, double), *G = block_factors(x), high = 0,
+           low = 0;
     struct block_tridiag t = tridiagonal(x);
     struct work w = {0};
     const bool good = block_tridiag_factor(&t, &w) < 0;
@@ -171,7 +176,8 @@ double design_mass_condition(const struct model *m, const struct state *s, struc
     struct work w = {0};
     bool good = true;
     begin(m->nu, v);
-    for (int k = 0; k < ITERATIONS; k++) { /* without gravity and at rest inverse dynamics is M u' */
+    /* without gravity and at rest inverse dynamics is M u' */
+    for (int k = 0; k < ITERATIONS; k++) {
         rnea(d, s->q, d->zero, v, y, &w);
         high = normalise(m->nu, y);
         memcpy(v, y, (size_t)m->nu * sizeof *v);
@@ -187,7 +193,7 @@ double design_mass_condition(const struct model *m, const struct state *s, struc
     return good ? high * low : NAN;
 }
 
-/* --- backward errors --------------------------------------------------------------------------------------------- */
+/* --- backward errors -------------------------------------------------------------------------- */
 
 struct posed {
     const struct design_system *x;
@@ -213,7 +219,8 @@ static void solve(struct comm *c, void *context)
     for (int i = b->lo; i < b->hi; i++) {
         const int n = x->size[i], before = i > 0 ? x->size[i - 1] : 0;
         for (int r = 0; r < n; r++)
-            for (int k = 0; k <= r; k++) blocks_row_D(b, i)[packed_index(r, k)] = x->D[36 * i + r * n + k];
+            for (int k = 0; k <= r; k++)
+                blocks_row_D(b, i)[packed_index(r, k)] = x->D[36 * i + r * n + k];
         if (i > 0) memcpy(blocks_row_L(b, i), x->L + 36 * i, (size_t)(n * before) * sizeof(double));
         memcpy(blocks_row_r(b, i), p->r + 6 * i, (size_t)n * sizeof(double));
     }
@@ -226,13 +233,16 @@ static void solve(struct comm *c, void *context)
 /* Largest componentwise error, residual in long double. */
 static double judge(const struct design_system *x, const double *r, const double *found)
 {
-    long double *y = TAKE(x->a, 6 * x->n, long double), *z = TAKE(x->a, 6 * x->n, long double), worst = 0;
+    long double *y = TAKE(x->a, 6 * x->n, long double), *z = TAKE(x->a, 6 * x->n, long double),
+                worst = 0;
     for (int i = 0; i < 6 * x->n; i++) y[i] = -r[i], z[i] = fabs(r[i]);
     for (int i = 0; i < x->n; i++) {
         const int c = x->size[i], b = i > 0 ? x->size[i - 1] : 0;
         for (int e = 0; e < c * (c + b); e++) {
-            const int row = e / (c + b), k = e % (c + b), at = k < c ? 6 * i + k : 6 * (i - 1) + k - c;
-            const long double t = k < c ? x->D[36 * i + row * c + k] : x->L[36 * i + row * b + k - c];
+            const int row = e / (c + b), k = e % (c + b),
+                      at = k < c ? 6 * i + k : 6 * (i - 1) + k - c;
+            const long double t =
+                k < c ? x->D[36 * i + row * c + k] : x->L[36 * i + row * b + k - c];
             y[6 * i + row] += t * found[at], z[6 * i + row] += fabsl(t * found[at]);
             if (k < c) continue;
             y[at] += t * found[6 * i + row], z[at] += fabsl(t * found[6 * i + row]);
@@ -243,20 +253,24 @@ static double judge(const struct design_system *x, const double *r, const double
     return (double)worst;
 }
 
-double design_backward_error(const struct design_system *x, enum solver solver, enum part_solver part, int nrank)
+double design_backward_error(const struct design_system *x, enum solver solver,
+                             enum part_solver part, int nrank)
 {
     struct arena_mark mark = arena_mark(x->a);
     const int n = x->n;
     double *r = TAKE(x->a, 6 * n, double), *found = TAKE(x->a, 6 * n, double);
     unsigned char *interface = TAKE(x->a, nrank, unsigned char);
     int *first = TAKE(x->a, nrank + 1, int);
-    struct posed p = {.x = x, .r = r, .found = found, .spec = {.solver = solver, .part_solver = part}};
+    struct posed p = {
+        .x = x, .r = r, .found = found, .spec = {.solver = solver, .part_solver = part}};
     begin(6 * n, r);
     trim(x, r);
-    p.layout = (struct row_layout){.nrow = n, .nrank = nrank, .first = first, .size = x->size, .interface = interface};
+    p.layout = (struct row_layout){
+        .nrow = n, .nrank = nrank, .first = first, .size = x->size, .interface = interface};
     for (int k = 0; k <= nrank; k++) first[k] = (int)((long)n * k / nrank);
     for (int k = 0; k < nrank; k++) interface[k] = x->size[first[k + 1] - 1];
-    for (int i = 0; i < n; i++) p.layout.largest = x->size[i] > p.layout.largest ? x->size[i] : p.layout.largest;
+    for (int i = 0; i < n; i++)
+        p.layout.largest = x->size[i] > p.layout.largest ? x->size[i] : p.layout.largest;
     many_ranks_run(nrank, solve, &p);
     double error = p.broken ? (double)INFINITY : judge(x, r, found);
     arena_release(x->a, mark);

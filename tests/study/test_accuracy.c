@@ -1,4 +1,5 @@
-/* test_accuracy.c - ladders find planted errors, choose by arithmetic, and omissions change no result. */
+/* test_accuracy.c - ladders find planted errors, choose by arithmetic, and omissions change no
+ * result. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,12 +21,26 @@
 
 static struct run_spec chain_spec(int n, int nrank)
 {
-    struct run_spec s = {.scenario = "test", .nrank = nrank, .seed = 1, .machine = trial_machine(nrank)};
-    s.model = (struct model_spec){.generator = MODEL_SERIAL_CHAIN, .nbody = n, .joint = JOINT_REVOLUTE,
-                                  .pose = POSE_COILED, .axes = AXES_TWISTED, .length = 1, .radius = 0.05, .mass = 1,
-                                  .mass_ratio = 1, .gravity = {0, 0, -9.81}, .rate = 1, .torque = 1, .seed = 1};
-    s.kernel = (struct kernel_spec){.name = "forward", .formulation = FORMULATION_DIRECT, .composites_incoming = true,
-                                    .solver = SOLVER_PCR_SYMMETRIC, .hybrid_levels = 1};
+    struct run_spec s = {
+        .scenario = "test", .nrank = nrank, .seed = 1, .machine = trial_machine(nrank)};
+    s.model = (struct model_spec){.generator = MODEL_SERIAL_CHAIN,
+                                  .nbody = n,
+                                  .joint = JOINT_REVOLUTE,
+                                  .pose = POSE_COILED,
+                                  .axes = AXES_TWISTED,
+                                  .length = 1,
+                                  .radius = 0.05,
+                                  .mass = 1,
+                                  .mass_ratio = 1,
+                                  .gravity = {0, 0, -9.81},
+                                  .rate = 1,
+                                  .torque = 1,
+                                  .seed = 1};
+    s.kernel = (struct kernel_spec){.name = "forward",
+                                    .formulation = FORMULATION_DIRECT,
+                                    .composites_incoming = true,
+                                    .solver = SOLVER_PCR_SYMMETRIC,
+                                    .hybrid_levels = 1};
     return s;
 }
 
@@ -75,7 +90,8 @@ static void the_cheapest_good_enough_rung_is_chosen(void **state)
     arena_destroy(a);
 }
 
-static double error_of(const struct accuracy_report *r, const char *ladder, const char *method, const char *rung)
+static double error_of(const struct accuracy_report *r, const char *ladder, const char *method,
+                       const char *rung)
 {
     for (int i = 0; i < r->nrung; i++)
         if (strcmp(r->rung[i].ladder, ladder) == 0 && strcmp(r->rung[i].method, method) == 0 &&
@@ -85,7 +101,8 @@ static double error_of(const struct accuracy_report *r, const char *ladder, cons
     return NAN;
 }
 
-/* The order of a method is what is known of its error beforehand: four times the steps, 4 and 16 times less of it. */
+/* The order of a method is what is known of its error beforehand: four times the steps, 4 and 16
+ * times less of it. */
 static void ladders_show_the_errors_that_theory_knows(void **state)
 {
     (void)state;
@@ -95,7 +112,8 @@ static void ladders_show_the_errors_that_theory_knows(void **state)
     err_clear(&e);
     struct run_spec spec = chain_spec(5, 5);
     struct plan_options o = {0};
-    assert_true(plan_machine(&spec.machine, MIMDSIM_SRCDIR "/machines/t3e-300.yaml", &o, a, NULL, NULL, &e));
+    assert_true(plan_machine(&spec.machine, MIMDSIM_SRCDIR "/machines/t3e-300.yaml", &o, a, NULL,
+                             NULL, &e));
     assert_true(accuracy_measure(&spec, 1, 0, true, a, &r, &e));
     double one = error_of(&r, "integration", "own semi-implicit", "256 steps") /
                  error_of(&r, "integration", "own semi-implicit", "1024 steps");
@@ -107,7 +125,8 @@ static void ladders_show_the_errors_that_theory_knows(void **state)
     assert_true(single > 1e-9 && single < 1e-4);
     assert_true(error_of(&r, "arithmetic", "serial aba", "double") < 1e-13);
     assert_true(error_of(&r, "arithmetic", "serial cfa-direct", "quad") < 1e-15);
-    assert_true(error_of(&r, "network", "auto", "auto") == error_of(&r, "network", "packet", "packet"));
+    assert_true(error_of(&r, "network", "auto", "auto") ==
+                error_of(&r, "network", "packet", "packet"));
     assert_int_equal(r.nchoice, 3);
     arena_destroy(a);
 }
@@ -115,7 +134,8 @@ static void ladders_show_the_errors_that_theory_knows(void **state)
 /* Chains, trees and loops of any kind. */
 static struct run_spec random_spec(uint64_t seed, const struct machine_spec *machine)
 {
-    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE, MODEL_RING, MODEL_COMB};
+    static const enum model_generator generator[] = {MODEL_SERIAL_CHAIN, MODEL_RANDOM_TREE,
+                                                     MODEL_RING, MODEL_COMB};
     static const enum network_level level[] = {LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_AUTO};
     static const enum model_joint joint[] = {JOINT_REVOLUTE, JOINT_SPHERICAL, JOINT_PRISMATIC};
     struct random r = random_make(seed, 7, 0);
@@ -125,7 +145,8 @@ static struct run_spec random_spec(uint64_t seed, const struct machine_spec *mac
     s.machine.network.level = level[random_below(&r, 4)];
     s.model.generator = generator[random_below(&r, 4)];
     s.model.joint = s.model.generator == MODEL_RING ? JOINT_REVOLUTE : joint[random_below(&r, 3)];
-    s.model.base = s.model.generator != MODEL_RING && random_below(&r, 2) ? BASE_FLOATING : BASE_FIXED;
+    s.model.base =
+        s.model.generator != MODEL_RING && random_below(&r, 2) ? BASE_FLOATING : BASE_FIXED;
     s.model.branch = 2;
     s.model.seed = seed;
     memcpy(s.kernel.name, "dynamics", sizeof "dynamics");
@@ -158,13 +179,15 @@ static void same_times(const struct run_result *x, const struct run_result *y)
 static void nothing_left_out_changes_a_result(void **state)
 {
     (void)state;
-    const unsigned host = KEEP_START_EVENTS | KEEP_SPANS | KEEP_LINKS | KEEP_BASELINE | KEEP_CONTENTION;
+    const unsigned host =
+        KEEP_START_EVENTS | KEEP_SPANS | KEEP_LINKS | KEEP_BASELINE | KEEP_CONTENTION;
     struct machine_spec machine;
     struct plan_options o = {0};
     struct arena *a = arena_create();
     struct err e;
     err_clear(&e);
-    assert_true(plan_machine(&machine, MIMDSIM_SRCDIR "/machines/t3e-300.yaml", &o, a, NULL, NULL, &e));
+    assert_true(
+        plan_machine(&machine, MIMDSIM_SRCDIR "/machines/t3e-300.yaml", &o, a, NULL, NULL, &e));
     int recorded = 0;
     for (uint64_t seed = 1; seed <= 40; seed++) {
         struct run_spec s = random_spec(seed, &machine);
@@ -173,11 +196,13 @@ static void nothing_left_out_changes_a_result(void **state)
         s.keep = host;
         run(&s, a, &with);
         same_times(&with, &without);
-        s.keep = host | KEEP_EXTERNAL; /* adding zero forces takes the machine time, but changes no number */
+        /* adding zero forces takes the machine time, but changes no number */
+        s.keep = host | KEEP_EXTERNAL;
         run(&s, a, &loaded);
         assert_int_equal(loaded.status, without.status);
         assert_int_equal(loaded.nerror, without.nerror);
-        for (int i = 0; i < without.nerror; i++) assert_true(loaded.error[i].relative == without.error[i].relative);
+        for (int i = 0; i < without.nerror; i++)
+            assert_true(loaded.error[i].relative == without.error[i].relative);
         assert_true(loaded.residual == without.residual && loaded.condition == without.condition);
         recorded += with.nspan > 0 && without.nspan == 0;
     }
@@ -192,8 +217,11 @@ static void untrustworthy_answers_are_told(void **state)
     struct run_spec spec = chain_spec(2, 2);
     const struct model chain = {.nbody = 2, .is_chain = true};
     struct dynamics_run own = {.job = {.spec = &spec, .model = &chain, .nrank = 2}};
-    struct program_run run = {.spec = spec, .own = &own, .output = {[OUTPUT_QDD] = {qdd, 1},
-                              [OUTPUT_RESIDUAL] = {residual, 2}, [OUTPUT_CONDITION] = {condition, 2}}};
+    struct program_run run = {.spec = spec,
+                              .own = &own,
+                              .output = {[OUTPUT_QDD] = {qdd, 1},
+                                         [OUTPUT_RESIDUAL] = {residual, 2},
+                                         [OUTPUT_CONDITION] = {condition, 2}}};
     own.job.spec = &run.spec;
     struct run_result r = {.status = RUN_OK};
     run.spec.kernel.refinement = REFINEMENT_AS_GIVEN;
@@ -223,7 +251,8 @@ static void untrustworthy_answers_are_told(void **state)
     r.status = RUN_OK, residual[0] = residual[1] = 0, condition[1] = 1e17;
     trust_check(&run, &r);
     assert_int_equal(r.status, RUN_INVALID);
-    run.spec.kernel.residual = RESIDUAL_TWICE; /* factors of no digit would leave a residual there */
+    /* factors of no digit would leave a residual there */
+    run.spec.kernel.residual = RESIDUAL_TWICE;
     r.status = RUN_OK;
     trust_check(&run, &r);
     assert_int_equal(r.status, RUN_OK);
@@ -232,7 +261,8 @@ static void untrustworthy_answers_are_told(void **state)
 static const struct stability_row *row_of(const struct stability_report *r, const char *algorithm)
 {
     for (int i = 0; i < r->nrow; i++)
-        if (strcmp(r->row[i].algorithm, algorithm) == 0 && strcmp(r->row[i].precision, "double") == 0)
+        if (strcmp(r->row[i].algorithm, algorithm) == 0 &&
+            strcmp(r->row[i].precision, "double") == 0)
             return &r->row[i];
     fail_msg("no row for %s", algorithm);
     return NULL;
@@ -257,7 +287,8 @@ static struct stability_report rows_of(const char *name, struct arena *rows)
     return r;
 }
 
-/* A light body between heavy ones is the bad case of every constraint-force form, and of those alone: physics 8.3. */
+/* A light body between heavy ones is the bad case of every constraint-force form, and of those
+ * alone: physics 8.3. */
 static void the_suite_knows_good_from_bad(void **state)
 {
     (void)state;
@@ -268,7 +299,8 @@ static void the_suite_knows_good_from_bad(void **state)
     assert_int_equal(row_of(&r, "direct cr")->status, STABILITY_DEGRADED);
     assert_int_equal(row_of(&r, "robust cr")->status, STABILITY_OK);
     assert_true(row_of(&r, "paper pcr")->residual > 1e3 * row_of(&r, "direct cr")->residual);
-    assert_true(row_of(&r, "paper pcr")->energy_drift > 1e3 * row_of(&r, "direct cr")->energy_drift);
+    assert_true(row_of(&r, "paper pcr")->energy_drift >
+                1e3 * row_of(&r, "direct cr")->energy_drift);
     assert_int_equal(row_of(&r, "direct pcr inner")->refinements, 1);
     assert_int_equal(row_of(&r, "robust cr")->refinements, 2);
     assert_true(row_of(&r, "cfa-robust")->refinements > 1);
@@ -290,13 +322,15 @@ static void twice_the_precision_mends_the_worst(void **state)
     }
 }
 
-/* Energy is kept by a conservative scene and lost by a damped one; corrections that are not needed are not counted. */
+/* Energy is kept by a conservative scene and lost by a damped one; corrections that are not needed
+ * are not counted. */
 static void the_suite_tells_what_moves_and_what_was_refined(void **state)
 {
     (void)state;
     struct arena *a = arena_create(), *rows = arena_create();
     struct stability_report r = {.arena = rows};
-    struct stability_scene c = {.name = "even", .spec = {.nbody = 8, .pose = POSE_COILED, .axes = AXES_TWISTED}};
+    struct stability_scene c = {.name = "even",
+                                .spec = {.nbody = 8, .pose = POSE_COILED, .axes = AXES_TWISTED}};
     struct model *m;
     struct state *s;
     struct err e;
@@ -304,7 +338,8 @@ static void the_suite_tells_what_moves_and_what_was_refined(void **state)
     assert_true(scene_build(&c, a, &m, &s, &e));
     stability_accelerations(&r, c.name, m, s, false, a);
     stability_energy(&r, c.name, m, s, a);
-    assert_int_equal(row_of(&r, "robust cr")->refinements, 1); /* the outer one was asked for, too */
+    assert_int_equal(row_of(&r, "robust cr")->refinements,
+                     1); /* the outer one was asked for, too */
     assert_true(row_of(&r, "motion rk8pd")->energy_drift < 1e-10);
     assert_true(row_of(&r, "motion rk4")->energy_drift < 1e-8);
     assert_int_equal(row_of(&r, "motion rk4")->status, STABILITY_OK);

@@ -18,7 +18,7 @@
 
 enum { PICKS = 3, MOST_COLUMNS = 80 };
 
-/* --- a small database --------------------------------------------------------------------------- */
+/* --- a small database ------------------------------------------------------------------------- */
 
 static const char scenario[] =
     "schema_version: 1\nquestion: \"?\"\nmachine: t3e-300\nkernel: {name: dynamics}\nmodel: {n: "
@@ -59,19 +59,19 @@ static void change(struct store *s, const char *sql)
     if (!store_select(s, sql, 0, NULL, NULL, NULL, &e)) fail_msg("%s: %s", sql, e.text);
 }
 
-/* View rank_stage shows entries of a text: what is written to the view is written there, for this connection. */
+/* View rank_stage shows entries of a text: what is written to the view is written there, for this
+ * connection. */
 static const char *const writable_view[] = {
-    "CREATE TEMP TRIGGER rank_delete INSTEAD OF DELETE ON main.rank_stage BEGIN"
-    " UPDATE rank_times SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries)"
-    " WHERE json_extract(value, '$[0]') IS NOT OLD.rank OR json_extract(value, '$[1]') IS NOT OLD.stage)"
-    " WHERE run_id = OLD.run_id; END",
-    "CREATE TEMP TRIGGER rank_update INSTEAD OF UPDATE ON main.rank_stage BEGIN"
-    " UPDATE rank_times SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries)"
-    " WHERE json_extract(value, '$[0]') IS NOT OLD.rank OR json_extract(value, '$[1]') IS NOT OLD.stage)"
-    " WHERE run_id = OLD.run_id;"
-    " UPDATE rank_times SET entries = json_insert(entries, '$[#]', json_array(NEW.rank, NEW.stage, NEW.compute_ps,"
-    " NEW.send_ps, NEW.recv_ps, NEW.wait_ps, NEW.contention_ps, NEW.messages, NEW.sent_bytes, NEW.flops))"
-    " WHERE run_id = NEW.run_id; END"};
+    "CREATE TEMP TRIGGER rank_delete INSTEAD OF DELETE ON main.rank_stage BEGIN UPDATE rank_times "
+    "SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries) WHERE "
+    "json_extract(value, '$[0]') IS NOT OLD.rank OR json_extract(value, '$[1]') IS NOT OLD.stage) "
+    "WHERE run_id = OLD.run_id; END",
+    "CREATE TEMP TRIGGER rank_update INSTEAD OF UPDATE ON main.rank_stage BEGIN UPDATE rank_times "
+    "SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries) WHERE "
+    "json_extract(value, '$[0]') IS NOT OLD.rank OR json_extract(value, '$[1]') IS NOT OLD.stage) "
+    "WHERE run_id = OLD.run_id; UPDATE rank_times SET entries = json_insert(entries, '$[#]', "
+    "json_array(NEW.rank, NEW.stage, NEW.compute_ps, NEW.send_ps, NEW.recv_ps, NEW.wait_ps, "
+    "NEW.contention_ps, NEW.messages, NEW.sent_bytes, NEW.flops)) WHERE run_id = NEW.run_id; END"};
 
 static struct store *make_database(struct scratch *dir)
 {
@@ -87,15 +87,13 @@ static struct store *make_database(struct scratch *dir)
     add_runs(s, dir, "blocked.yaml", blocked);
     for (int i = 0; i < 2; i++) change(s, writable_view[i]);
     change(s, "INSERT INTO check_point (suite, subject, quantity, at, unit, reference, value, "
-              "relative_error, tolerance,"
-              " class, verdict, source, cause) VALUES ('s', 'm', 'one-way', '8', 'us', 10, 10.5, "
-              "0.05, 0.1, 'P', 'pass',"
-              " 'x', ''), ('s', 'm', 'r-inf', '', 'MB/s', 100, 60, -0.4, 0.1, 'P', 'explained', "
-              "'x', 'known')");
+              "relative_error, tolerance, class, verdict, source, cause) VALUES ('s', 'm', "
+              "'one-way', '8', 'us', 10, 10.5, 0.05, 0.1, 'P', 'pass', 'x', ''), ('s', 'm', "
+              "'r-inf', '', 'MB/s', 100, 60, -0.4, 0.1, 'P', 'explained', 'x', 'known')");
     return s;
 }
 
-/* --- one mutant --------------------------------------------------------------------------------- */
+/* --- one mutant ------------------------------------------------------------------------------- */
 
 enum kind { DIGIT, SIGN, EXCHANGE, EMPTY, DELETED, KINDS };
 static const char *const kind_name[KINDS] = {"digit", "sign", "exchange", "NULL", "deleted"};
@@ -237,7 +235,7 @@ static bool mutate(struct store *s, const struct table *t, int column, enum kind
     return true;
 }
 
-/* --- verdicts ----------------------------------------------------------------------------------- */
+/* --- verdicts --------------------------------------------------------------------------------- */
 
 static int64_t findings(struct store *s, int again)
 {
@@ -303,8 +301,7 @@ static void add(struct tally *sum, const struct tally *t)
 static void print(const char *name, const struct tally *t)
 {
     print_message("%-14s %5d mutants: found by rules %5.1f %%, with the runs made again %5.1f %%; "
-                  "%d of no effect on an "
-                  "answer, %d refused by the schema\n",
+                  "%d of no effect on an answer, %d refused by the schema\n",
                   name, t->made, t->made ? 100.0 * t->by_rules / t->made : 100,
                   t->made ? 100.0 * t->by_all / t->made : 100, t->free, t->refused);
 }

@@ -1,5 +1,5 @@
-/* test_collective_times.c - collectives simulated at level loggp take what their closed forms say, to the picosecond.
- */
+/* test_collective_times.c - collectives simulated at level loggp take what their closed forms say,
+ * to the picosecond. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,8 +12,8 @@
 #include "kernel/micro_collective.h"
 #include "run/run.h"
 
-/* LogGP: o_s 2 us, o_r 3 us, L = 400 ns through the crossbar and 700 ns at the ends, G 1 ns a byte; 1 ns a flop and a
- * byte copied. */
+/* LogGP: o_s 2 us, o_r 3 us, L = 400 ns through the crossbar and 700 ns at the ends, G 1 ns a byte;
+ * 1 ns a flop and a byte copied. */
 enum { SEND = 2000000, RECEIVE = 3000000, WIRE = 1100000, BYTE = 1000, FLOP = 1000, COPY = 1000 };
 
 static struct run_spec spec_of(const char *kernel, const char *algorithm, int P, int64_t bytes)
@@ -22,7 +22,8 @@ static struct run_spec spec_of(const char *kernel, const char *algorithm, int P,
     struct machine_spec *m = &s.machine;
     strcpy(m->name, "loggp");
     m->topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {P}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {P}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m->node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m->network = (struct network_spec){.level = LEVEL_LOGGP,
                                        .link_bandwidth = 1e9,
@@ -31,7 +32,8 @@ static struct run_spec spec_of(const char *kernel, const char *algorithm, int P,
                                        .flit_bytes = 1,
                                        .virtual_channels = 1,
                                        .buffer_flits = 64};
-    m->software = (struct software_spec){.send_overhead = 2e-6, .recv_overhead = 3e-6, .eager_bytes = -1};
+    m->software =
+        (struct software_spec){.send_overhead = 2e-6, .recv_overhead = 3e-6, .eager_bytes = -1};
     strcpy(s.kernel.name, kernel);
     strcpy(s.kernel.algorithm, algorithm);
     s.kernel.repeat = 1;
@@ -54,17 +56,22 @@ static int64_t simulated(const struct run_spec *s)
 }
 
 static int64_t at_most_one_less(int64_t bytes) { return bytes > 0 ? bytes - 1 : 0; }
-static int64_t message(int64_t bytes) { return SEND + WIRE + RECEIVE + at_most_one_less(bytes) * BYTE; }
+static int64_t message(int64_t bytes)
+{
+    return SEND + WIRE + RECEIVE + at_most_one_less(bytes) * BYTE;
+}
 
 static void is(const struct run_spec *s, int64_t wanted)
 {
     int64_t found = simulated(s);
     if (found != wanted)
-        fail_msg("%s by %s, P = %d, %lld bytes: %lld ps, not %lld", s->kernel.name, s->kernel.algorithm, s->nrank,
-                 (long long)s->kernel.message_bytes, (long long)found, (long long)wanted);
+        fail_msg("%s by %s, P = %d, %lld bytes: %lld ps, not %lld", s->kernel.name,
+                 s->kernel.algorithm, s->nrank, (long long)s->kernel.message_bytes,
+                 (long long)found, (long long)wanted);
 }
 
-/* rounds (o_s + L + o_r) + (path - rounds) G, and what is computed on the path; all messages have bytes or none has. */
+/* rounds (o_s + L + o_r) + (path - rounds) G, and what is computed on the path; all messages have
+ * bytes or none has. */
 static int64_t in_rounds(const struct run_spec *s, int64_t computed)
 {
     struct err e = {0};
@@ -192,18 +199,22 @@ static void barriers(void **state)
     }
 }
 
-/* Both neighbours: the second message follows the first out of the port, and its receiver takes two. */
+/* Both neighbours: the second message follows the first out of the port, and its receiver takes
+ * two. */
 static void rings(void **state)
 {
     (void)state;
     for (int P = 2; P <= 12; P++)
         for (int random = 0; random < 2; random++) {
             struct run_spec s = spec_of(random ? "random-ring" : "ring", "", P, 8192);
-            is(&s, 2 * SEND + (8192 - (int64_t)SEND / BYTE) * BYTE + WIRE + 8191 * (int64_t)BYTE + RECEIVE);
+            is(&s, 2 * SEND + (8192 - (int64_t)SEND / BYTE) * BYTE + WIRE + 8191 * (int64_t)BYTE +
+                       RECEIVE);
             s = spec_of(random ? "random-ring" : "ring", "", P, 8);
-            is(&s, 2 * (int64_t)SEND + 2 * (int64_t)RECEIVE); /* the first is there before the second is sent */
+            /* the first is there before the second is sent */
+            is(&s, 2 * (int64_t)SEND + 2 * (int64_t)RECEIVE);
             s.kernel.ring_ranks = 2;
-            is(&s, 2 * (int64_t)SEND + 2 * (int64_t)RECEIVE); /* the first is there before the second is sent */
+            /* the first is there before the second is sent */
+            is(&s, 2 * (int64_t)SEND + 2 * (int64_t)RECEIVE);
         }
 }
 

@@ -1,5 +1,6 @@
-/* test_design_tables.c - the design's tables of condition numbers, errors and breakdowns (physics 8), entry by entry:
- * each is met within a factor of 10, or it is listed with what comes out here and why. */
+/* test_design_tables.c - the design's tables of condition numbers, errors and breakdowns (physics
+ * 8), entry by entry: each is met within a factor of 10, or it is listed with what comes out here
+ * and why. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +18,8 @@
 
 enum { MOST_LINE = 400 };
 
-/* One line of tests/data/physics/tables.txt: table family n masses ratio column value here reason. */
+/* One line of tests/data/physics/tables.txt: table family n masses ratio column value here
+ * reason. */
 struct entry {
     char table[8], family[12], masses[16], column[24], reason[200];
     int n;
@@ -40,8 +42,8 @@ static bool entry_read(FILE *f, struct entry *x)
     while (fgets(line, sizeof line, f)) {
         if (line[0] == '#' || line[0] == '\n') continue;
         *x = (struct entry){0};
-        int got = sscanf(line, "%7s %11s %d %15s %lf %23s %lf %23s %199[^\n]", x->table, x->family, &x->n, x->masses,
-                         &x->ratio, x->column, &x->value, here, x->reason);
+        int got = sscanf(line, "%7s %11s %d %15s %lf %23s %lf %23s %199[^\n]", x->table, x->family,
+                         &x->n, x->masses, &x->ratio, x->column, &x->value, here, x->reason);
         if (got < 8) fail_msg("not an entry: %s", line);
         if (sscanf(here, "%lf", &x->here) != 1) x->here = NAN;
         if (isfinite(x->here) && got < 9) fail_msg("no reason: %s", line);
@@ -52,8 +54,8 @@ static bool entry_read(FILE *f, struct entry *x)
 
 static struct stability_scene scene_of(const struct entry *x, const char *name)
 {
-    static const char *const spread[] = {"even", "heavy-tip", "light-tip", "light-base", "up", "down", "random",
-                                         "alternating"};
+    static const char *const spread[] = {"even", "heavy-tip", "light-tip", "light-base",
+                                         "up",   "down",      "random",    "alternating"};
     struct stability_scene c = {.name = name, .spec = {.nbody = x->n}, .ratio = x->ratio};
     if (strcmp(x->family, "twist") == 0) c.spec.axes = AXES_TWISTED;
     if (strcmp(x->family, "coil") == 0) c.spec.axes = AXES_TWISTED, c.spec.pose = POSE_COILED;
@@ -110,8 +112,10 @@ static double measure(struct subject *t, const struct entry *x)
     if (strcmp(x->column, "cond-A") == 0) return design_condition(&t->system, false);
     if (strcmp(x->column, "cond-blk") == 0) return design_condition(&t->system, true);
     if (strcmp(x->column, "cond-M") == 0) return design_mass_condition(t->m, t->s, t->a);
-    if (strcmp(x->column, "thomas") == 0) return design_backward_error(&t->system, SOLVER_THOMAS, PART_CR, 1);
-    if (strcmp(x->column, "cr") == 0) return design_backward_error(&t->system, SOLVER_CR, PART_CR, x->n);
+    if (strcmp(x->column, "thomas") == 0)
+        return design_backward_error(&t->system, SOLVER_THOMAS, PART_CR, 1);
+    if (strcmp(x->column, "cr") == 0)
+        return design_backward_error(&t->system, SOLVER_CR, PART_CR, x->n);
     if (strcmp(x->column, "pcr") == 0)
         return design_backward_error(&t->system, SOLVER_PCR_SYMMETRIC, PART_PCR, x->n);
     return error_of(t, x->column);
@@ -133,8 +137,8 @@ static void every_entry_is_met_or_explained(void **state)
         entries++;
         met += fits;
         if (fits || (isfinite(x.here) && within(here, x.here))) continue;
-        print_message("%s %s %d %s %.0e %s: %.0e in the design, %.1e here\n", x.table, x.family, x.n, x.masses,
-                      x.ratio, x.column, x.value, here);
+        print_message("%s %s %d %s %.0e %s: %.0e in the design, %.1e here\n", x.table, x.family,
+                      x.n, x.masses, x.ratio, x.column, x.value, here);
         wrong++;
     }
     fclose(f);
@@ -158,10 +162,12 @@ static void breakdown_comes_where_the_design_says(void **state)
     x.n = 8192;
     subject_make(&t, &x);
     const double pcr = design_backward_error(&t.system, SOLVER_PCR_SYMMETRIC, PART_PCR, 8);
-    assert_true(pcr > 1e-6 && isfinite(pcr)); /* long before breakdown there is nothing right in the answer */
+    /* long before breakdown there is nothing right in the answer */
+    assert_true(pcr > 1e-6 && isfinite(pcr));
     assert_true(design_backward_error(&t.system, SOLVER_PARTITION, PART_CR, 8) < 1e-14);
     x = (struct entry){.n = 64, .ratio = 1e12};
-    static const char *const family[] = {"twist", "sphere"}, *const masses[] = {"heavy-tip", "up", "even"};
+    static const char *const family[] = {"twist", "sphere"}, *const masses[] = {"heavy-tip", "up",
+                                                                                "even"};
     for (int k = 0; k < 6; k++) {
         snprintf(x.family, sizeof x.family, "%s", family[k / 3]);
         snprintf(x.masses, sizeof x.masses, "%s", masses[k % 3]);

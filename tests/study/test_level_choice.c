@@ -50,7 +50,8 @@ static void a_run_takes_the_level_and_is_the_run_at_that_level(void **state)
     assert_int_equal(s.machine.network.level, LEVEL_LINK);
     assert_true(choice.made && choice.error == 8e-3 && choice.tolerance == 0.01);
     assert_string_equal(choice.at, "P=8");
-    /* Its identity is its own: not that of the question, but that of a run that asks for the level at once. */
+    /* Its identity is its own: not that of the question, but that of a run that asks for the level
+     * at once. */
     assert_string_not_equal(s.config_hash, asked);
     plain.machine.network.level = LEVEL_LINK;
     plain.machine.network.tolerance = 0.02; /* the default */

@@ -1,4 +1,5 @@
-/* test_probe.c - quantities measured on machines whose answers follow from their numbers by hand. */
+/* test_probe.c - quantities measured on machines whose answers follow from their numbers by
+ * hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +16,8 @@ static struct machine_spec mesh(void)
 {
     struct machine_spec m = {.name = "hand"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_MESH, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_MESH, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m.network = (struct network_spec){.link_bandwidth = 1e9,
                                       .hop_latency = 3e-6,
@@ -23,7 +25,8 @@ static struct machine_spec mesh(void)
                                       .flit_bytes = 1,
                                       .virtual_channels = 1,
                                       .buffer_flits = 64};
-    m.software = (struct software_spec){.send_overhead = 10e-6, .recv_overhead = 20e-6, .eager_bytes = -1};
+    m.software =
+        (struct software_spec){.send_overhead = 10e-6, .recv_overhead = 20e-6, .eager_bytes = -1};
     return m;
 }
 
@@ -38,7 +41,8 @@ static double measured(const struct machine_spec *m, enum probe_quantity q, doub
 
 static void is(double found, double expected)
 {
-    if (!(fabs(found - expected) <= 1e-9 * fabs(expected))) fail_msg("%.12g, not %.12g", found, expected);
+    if (!(fabs(found - expected) <= 1e-9 * fabs(expected)))
+        fail_msg("%.12g, not %.12g", found, expected);
 }
 
 /* o_s + 2 hops + (n - 1) G + end + o_r */
@@ -70,8 +74,8 @@ static void test_loggp(void **state)
     is(measured(&m, PROBE_GAP, 0), 30e-6);
 }
 
-/* Two ranks and three never share a link in a total exchange; four do in its second step, where messages come late by
- * a whole one; without contention nobody does. */
+/* Two ranks and three never share a link in a total exchange; four do in its second step, where
+ * messages come late by a whole one; without contention nobody does. */
 static void test_exchange(void **state)
 {
     (void)state;
@@ -104,7 +108,8 @@ static void test_wire(void **state)
     assert_int_equal(e.kind, ERR_CONFIG);
 }
 
-/* Links that a halving cuts: 4 cables of the mesh, 8 of the torus, 8 of the 4-cube; 3 x 2 / 2 x 4 between 3 groups. */
+/* Links that a halving cuts: 4 cables of the mesh, 8 of the torus, 8 of the 4-cube; 3 x 2 / 2 x 4
+ * between 3 groups. */
 static void test_cuts(void **state)
 {
     (void)state;
@@ -115,17 +120,20 @@ static void test_cuts(void **state)
     m.topology.dims[0] = 8;
     is(measured(&m, PROBE_BISECTION, 0), 16e9); /* across the longer side */
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_HYPERCUBE, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_HYPERCUBE, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     is(measured(&m, PROBE_BISECTION, 0), 16e9);
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 4, 2, 3}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 4, 2, 3}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     is(measured(&m, PROBE_GLOBAL, 0), 12e9); /* 8 ports a group, 3 groups, 2 ends a cable */
 }
 
 static void test_names(void **state)
 {
     (void)state;
-    for (int q = 0; q < PROBE_QUANTITIES; q++) assert_int_equal(probe_find(probe_name((enum probe_quantity)q)), q);
+    for (int q = 0; q < PROBE_QUANTITIES; q++)
+        assert_int_equal(probe_find(probe_name((enum probe_quantity)q)), q);
     assert_int_equal(probe_find("one-wya"), PROBE_QUANTITIES);
 }
 
@@ -150,8 +158,10 @@ static void test_collectives(void **state)
     is(of_ranks(&m, PROBE_ALLREDUCE, 1000, 2), 41.999e-6 + 125e-9);
     is(of_ranks(&m, PROBE_ALLTOALL, 8, 2), 41.007e-6);
     strcpy(m.software.collectives, "broadcast linear");
-    is(of_ranks(&m, PROBE_BROADCAST, 8, 3), 10e-6 + 41.007e-6 + 3e-6); /* the second message, a link further */
-    /* two sends, and of what comes 21.007 us after them the receiver takes the first while the second is on its way */
+    /* the second message, a link further */
+    is(of_ranks(&m, PROBE_BROADCAST, 8, 3), 10e-6 + 41.007e-6 + 3e-6);
+    /* two sends, and of what comes 21.007 us after them the receiver takes the first while the
+     * second is on its way */
     is(of_ranks(&m, PROBE_RING, 8, 2), 2 * 2 * 8 / (10e-6 + 11.007e-6 + 2 * 20e-6));
     is(of_ranks(&m, PROBE_RANDOM_RING, 8, 2), 2 * 2 * 8 / (10e-6 + 11.007e-6 + 2 * 20e-6));
     err_clear(&e);

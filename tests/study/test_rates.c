@@ -1,4 +1,5 @@
-/* test_rates.c - benchmark codes count what they execute, and a node's costs turn the counts into rates. */
+/* test_rates.c - benchmark codes count what they execute, and a node's costs turn the counts into
+ * rates. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,13 +20,15 @@ static void test_summed_is_executed(void **state)
         assert_true(run.nominal == sum.nominal);
         assert_int_equal(run.work.div, sum.work.div);
         assert_int_equal(run.work.call, sum.work.call);
-        assert_true(run.work.flop <= sum.work.flop && (double)run.work.flop >= 0.999 * (double)sum.work.flop);
+        assert_true(run.work.flop <= sum.work.flop &&
+                    (double)run.work.flop >= 0.999 * (double)sum.work.flop);
         alike += run.work.flop == sum.work.flop;
     }
     assert_true(alike > 20);
 }
 
-/* Order 100: 661,650 additions and multiplications of the factors, 19,800 of the solution; one multiplier is zero. */
+/* Order 100: 661,650 additions and multiplications of the factors, 19,800 of the solution; one
+ * multiplier is zero. */
 static void test_linpack_by_hand(void **state)
 {
     (void)state;
@@ -45,7 +48,8 @@ static void test_rates_by_hand(void **state)
 {
     (void)state;
     struct node_spec node = {
-        .flop_rate = 1e9, .clock = 1e9, .div_cycles = 10, .call_time = 100e-9, .copy_bandwidth = 0.5e9};
+        .flop_rate = 1e9, .clock = 1e9, .div_cycles = 10, .call_time = 100e-9,
+        .copy_bandwidth = 0.5e9};
     struct rate_count inner = rate_inner_product(1000);
     assert_true(fabs(rate_of(&node, &inner) - 2000 / 2.1e-6) < 1);
     struct rate_count copy = rate_stream(RATE_COPY, 1000), triad = rate_stream(RATE_TRIAD, 1000);

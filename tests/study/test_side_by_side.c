@@ -1,4 +1,5 @@
-/* test_side_by_side.c - pieces on worker processes: the same results in order, and a death is told. */
+/* test_side_by_side.c - pieces on worker processes: the same results in order, and a death is
+ * told. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -16,13 +17,15 @@
 enum { PIECES = 40, LARGEST = 300000 };
 
 struct log {
-    int dies, fails, refuses; /* pieces that end their worker, that have an error, that are not taken; -1: none */
+    /* pieces that end their worker, that have an error, that are not taken; -1: none */
+    int dies, fails, refuses;
     int taken;
     uint64_t sum;
     char data[LARGEST];
 };
 
-/* Pieces of very different sizes, larger than a pipe holds, some of none; early ones take longest. */
+/* Pieces of very different sizes, larger than a pipe holds, some of none; early ones take
+ * longest. */
 static bool make(void *context, int i, const void **data, size_t *bytes, struct err *e)
 {
     struct log *k = context;
@@ -103,7 +106,8 @@ static void the_suite_is_the_same_on_several_processes(void **state)
     struct err e;
     err_clear(&e);
     for (int k = 0; k < 2; k++) {
-        const struct stability_options o = {.most_bodies = 7, .workers = k == 0 ? 1 : 3, .quiet = true};
+        const struct stability_options o = {
+            .most_bodies = 7, .workers = k == 0 ? 1 : 3, .quiet = true};
         assert_true(stability_measure(NULL, 0, &o, a, &r[k], &e));
     }
     assert_int_equal(r[0].nrow, r[1].nrow);

@@ -1,4 +1,5 @@
-/* test_verify.c - verify: the reference vectors pass, wrong answers do not, and every verdict says why. */
+/* test_verify.c - verify: the reference vectors pass, wrong answers do not, and every verdict says
+ * why. */
 #include <glob.h>
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +20,8 @@
 #define DATA(file) MIMDSIM_SRCDIR "/tests/data/vectors/" file
 
 /* Verify `path`; fails the test when the file cannot be used. */
-static struct verify_report report_of(const char *path, const struct verify_options *o, struct arena *a)
+static struct verify_report report_of(const char *path, const struct verify_options *o,
+                                      struct arena *a)
 {
     struct verify_report r;
     struct err e;
@@ -28,10 +30,13 @@ static struct verify_report report_of(const char *path, const struct verify_opti
     return r;
 }
 
-static const struct verify_row *row_of(const struct verify_report *r, const char *algorithm, const char *quantity)
+static const struct verify_row *row_of(const struct verify_report *r, const char *algorithm,
+                                       const char *quantity)
 {
     for (int i = 0; i < r->nrow; i++)
-        if (strcmp(r->row[i].algorithm, algorithm) == 0 && strcmp(r->row[i].quantity, quantity) == 0) return &r->row[i];
+        if (strcmp(r->row[i].algorithm, algorithm) == 0 &&
+            strcmp(r->row[i].quantity, quantity) == 0)
+            return &r->row[i];
     fail_msg("%s: no row %s %s", r->name, algorithm, quantity);
     return NULL;
 }
@@ -77,16 +82,21 @@ static void planar_kernels_agree_with_planar_vectors(void **state)
 {
     (void)state;
     static const char *const name[] = {DATA("x_straight_n0016.json"), DATA("closed_fourbar.json"),
-                                       DATA("closed_slidercrank.json"), DATA("x_fourbar_changepoint.json")};
+                                       DATA("closed_slidercrank.json"),
+                                       DATA("x_fourbar_changepoint.json")};
     const struct verify_options o = {.parallel = true};
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         struct arena *a = arena_create();
         struct verify_report r = report_of(name[i], &o, a);
         assert_true(r.passed);
         assert_int_equal(row_of(&r, "parallel inverse planar", "tau_id")->verdict, VERIFY_PASS);
-        assert_int_equal(row_of(&r, "parallel forward paper planar", "qdd_fd")->verdict, VERIFY_PASS);
-        assert_int_equal(row_of(&r, "parallel forward direct planar", "qdd_fd")->verdict, VERIFY_PASS);
-        if (i > 0) assert_int_equal(row_of(&r, "parallel forward direct planar", "lambda")->verdict, VERIFY_PASS);
+        assert_int_equal(row_of(&r, "parallel forward paper planar", "qdd_fd")->verdict,
+                         VERIFY_PASS);
+        assert_int_equal(row_of(&r, "parallel forward direct planar", "qdd_fd")->verdict,
+                         VERIFY_PASS);
+        if (i > 0)
+            assert_int_equal(row_of(&r, "parallel forward direct planar", "lambda")->verdict,
+                             VERIFY_PASS);
         arena_destroy(a);
     }
 }
@@ -217,7 +227,8 @@ static void json_has_every_row_and_sorted_keys(void **state)
     const struct node *root = document_read(path, a, &e);
     assert_non_null(root);
     keys_are_sorted(root);
-    assert_true(document_find(root, "total")->number == 2 && document_find(root, "failed")->number == 0);
+    assert_true(document_find(root, "total")->number == 2 &&
+                document_find(root, "failed")->number == 0);
     const struct node *first = document_find(root, "cases")->child;
     assert_string_equal(document_text(first, "name"), "closed_fourbar");
     assert_int_equal(document_find(first, "rows")->count, r[0].nrow);

@@ -1,4 +1,5 @@
-/* test_verify_mutants.c - the checker checked: changed answers are found, and how many of them is printed. */
+/* test_verify_mutants.c - the checker checked: changed answers are found, and how many of them is
+ * printed. */
 #include <glob.h>
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +25,8 @@
 
 enum { MOST_NUMBERS = 20000 };
 
-/* The keys of answers, as the file has them, and where their numbers stand in struct verify_answers. */
+/* The keys of answers, as the file has them, and where their numbers stand in struct
+ * verify_answers. */
 static const struct answer_key {
     const char *key, *inside;
     enum verify_quantity quantity;
@@ -39,7 +41,8 @@ static const struct answer_key {
 };
 enum { KEYS = sizeof answer_key / sizeof *answer_key };
 
-/* Numbers of an answer: "tau_id" stands in the list of floors too, which the files have behind the answers. */
+/* Numbers of an answer: "tau_id" stands in the list of floors too, which the files have behind the
+ * answers. */
 static int numbers_of(const char *text, const struct answer_key *k, const char **number)
 {
     const char *from = k->inside ? vector_text_key(text, k->inside) : NULL;
@@ -64,7 +67,8 @@ static void write_text(const char *path, const char *text)
     fclose(out);
 }
 
-static bool verify_text(const char *text, bool parallel, struct arena *a, struct verify_report *r, struct err *e)
+static bool verify_text(const char *text, bool parallel, struct arena *a, struct verify_report *r,
+                        struct err *e)
 {
     char path[] = P_tmpdir "/mimdsim-mutant-XXXXXX";
     const struct verify_options o = {.parallel = parallel};
@@ -78,12 +82,13 @@ static bool verify_text(const char *text, bool parallel, struct arena *a, struct
     return good;
 }
 
-/* --- all answers at once ----------------------------------------------------------------------------------------- */
+/* --- all answers at once ---------------------------------------------------------------------- */
 
 enum change { DOUBLED, NEGATED, TURNED, CHANGES };
 static const char *const change_name[CHANGES] = {"doubled", "negated", "permuted"};
 
-/* All numbers of a key changed; permuted: each takes the place of the one before it, the last one's of the first. */
+/* All numbers of a key changed; permuted: each takes the place of the one before it, the last one's
+ * of the first. */
 static char *text_changed(char *text, const struct answer_key *k, enum change change)
 {
     static const char *number[MOST_NUMBERS];
@@ -141,7 +146,8 @@ static int file_accepts(const char *path, bool parallel)
         struct verify_report r;
         struct err e;
         char *changed = strdup(text);
-        for (int k = 0; k < KEYS; k++) changed = text_changed(changed, &answer_key[k], (enum change)change);
+        for (int k = 0; k < KEYS; k++)
+            changed = text_changed(changed, &answer_key[k], (enum change)change);
         if (!verify_text(changed, parallel, a, &r, &e)) fail_msg("%s: %s", path, e.text);
         for (int k = 0; k < KEYS; k++)
             if (!same_answer(text, changed, &answer_key[k]))
@@ -161,7 +167,8 @@ static void no_row_accepts_changed_answers(void **state)
     assert_int_equal(glob(DATA("*.json"), 0, NULL, &files), 0);
     for (size_t i = 0; i < files.gl_pathc; i++) {
         const char *path = files.gl_pathv[i];
-        bool small = strstr(path, "n000") || strstr(path, "closed_f") || strstr(path, "x_m") || strstr(path, "tiny");
+        bool small = strstr(path, "n000") || strstr(path, "closed_f") || strstr(path, "x_m") ||
+                     strstr(path, "tiny");
         wrong += file_accepts(path, small);
     }
     globfree(&files);
@@ -185,7 +192,8 @@ static void no_row_accepts_changed_poses(void **state)
             int n = vector_text_numbers(changed, key[k], changed + (fk - text), number, 9);
             double x = strtod(number[0], NULL), y = strtod(number[n - 1], NULL);
             text_real(with, change == DOUBLED ? 2 * x : change == NEGATED ? -x : y);
-            char *next = vector_text_put(changed, number[0], (size_t)(vector_text_end(number[0]) - number[0]), with);
+            char *next = vector_text_put(changed, number[0],
+                                         (size_t)(vector_text_end(number[0]) - number[0]), with);
             assert_true(verify_text(next, false, a, &r, &e));
             assert_int_equal(accepted(&r, VERIFY_FK, change_name[change]), 0);
             free(changed);
@@ -195,7 +203,8 @@ static void no_row_accepts_changed_poses(void **state)
     free(text);
 }
 
-/* Forces of 1e-8 N at the base, torques of 1e-18 N m in the joints: each joint's torque alone, off by a millionth. */
+/* Forces of 1e-8 N at the base, torques of 1e-18 N m in the joints: each joint's torque alone, off
+ * by a millionth. */
 static void small_torques_are_checked_beside_large_forces(void **state)
 {
     (void)state;
@@ -208,7 +217,8 @@ static void small_torques_are_checked_beside_large_forces(void **state)
         struct err e;
         char with[32];
         text_real(with, strtod(number[i], NULL) * 1.000001);
-        char *changed = vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with);
+        char *changed = vector_text_put(text, number[i],
+                                        (size_t)(vector_text_end(number[i]) - number[i]), with);
         assert_true(verify_text(changed, false, a, &r, &e));
         assert_int_equal(accepted(&r, VERIFY_TAU_ID, "off by a millionth"), 0);
         checked++;
@@ -225,7 +235,8 @@ static void no_changed_motion_passes(void **state)
     (void)state;
     static const struct { const char *key, *quantity; } part[] = {
         {"kinetic", "energy.kinetic"}, {"potential", "energy.potential"}, {"total", "energy.total"},
-        {"linear", "momentum.linear"}, {"angular_about_world_origin", "momentum.angular"}, {"q", "states"},
+        {"linear", "momentum.linear"}, {"angular_about_world_origin", "momentum.angular"}, {"q",
+         "states"},
         {"qd", "states"}};
     char *text = text_of(DATA("trajectories/traj_double_pendulum_point.json"));
     const char *states = vector_text_key(text, "states"), *middle = states + (strlen(states) / 4);
@@ -239,23 +250,26 @@ static void no_changed_motion_passes(void **state)
             int n = vector_text_numbers(text, part[k].key, middle, number, 8), i = n - 1;
             while (i > 0 && strtod(number[i], NULL) == 0) i--; /* a planar motion has zeros */
             text_real(with, strtod(number[i], NULL) * (change == DOUBLED ? 2 : -1));
-            char *changed = vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with);
+            char *changed = vector_text_put(text, number[i],
+                                            (size_t)(vector_text_end(number[i]) - number[i]), with);
             assert_true(verify_text(changed, false, a, &r, &e));
             bool found = false;
             for (int row = 0; row < r.nrow; row++)
                 found = found || (strcmp(r.row[row].quantity, part[k].quantity) == 0 &&
                                   r.row[row].verdict == VERIFY_FAIL);
-            if (r.passed || !found) fail_msg("%s %s is not found", part[k].key, change_name[change]);
+            if (r.passed || !found)
+                fail_msg("%s %s is not found", part[k].key, change_name[change]);
             free(changed);
             arena_destroy(a);
         }
     free(text);
 }
 
-/* --- one small change at a time ---------------------------------------------------------------------------------- */
+/* --- one small change at a time --------------------------------------------------------------- */
 
 enum mutation { DIGIT, SIGN, EXCHANGE, DROPPED, MISSPELT, MUTATIONS };
-static const char *const mutation_name[MUTATIONS] = {"digit", "sign", "exchange", "dropped key", "misspelt key"};
+static const char *const mutation_name[MUTATIONS] = {"digit", "sign", "exchange", "dropped key",
+                                                     "misspelt key"};
 
 struct mutant {
     char *text;    /* NULL: this mutation changes nothing here */
@@ -275,7 +289,8 @@ static void number_changed(char with[40], const char *at, enum mutation mutation
     size_t length = (size_t)(vector_text_end(at) - at);
     snprintf(with, 40, "%.*s", (int)length, at);
     if (mutation == SIGN) {
-        snprintf(with, 40, "%s%.*s", *at == '-' ? "" : "-", (int)length - (*at == '-'), at + (*at == '-'));
+        snprintf(with, 40, "%s%.*s", *at == '-' ? "" : "-", (int)length - (*at == '-'),
+                 at + (*at == '-'));
         return;
     }
     size_t digits = strcspn(with, "eE"), place;
@@ -284,38 +299,44 @@ static void number_changed(char with[40], const char *at, enum mutation mutation
     with[place] = (char)('0' + (with[place] - '0' + 1 + (int)random_below(r, 9)) % 10);
 }
 
-static struct mutant number_mutant(const char *text, const struct verify_answers *x, const struct answer_key *k,
-                                   enum mutation mutation, struct random *r)
+static struct mutant number_mutant(const char *text, const struct verify_answers *x,
+                                   const struct answer_key *k, enum mutation mutation,
+                                   struct random *r)
 {
     static const char *number[MOST_NUMBERS];
     int n = numbers_of(text, k, number), i = n > 0 ? (int)random_below(r, (uint64_t)n) : 0;
     char with[40];
     if (n == 0) return (struct mutant){NULL, false};
     number_changed(with, number[i], mutation, r);
-    return (struct mutant){vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with),
-                           matters(x, k->quantity, i, strtod(with, NULL))};
+    return (struct mutant){
+        vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with),
+        matters(x, k->quantity, i, strtod(with, NULL))};
 }
 
-static struct mutant exchange_mutant(const char *text, const struct verify_answers *x, const struct answer_key *k,
-                                     struct random *r)
+static struct mutant exchange_mutant(const char *text, const struct verify_answers *x,
+                                     const struct answer_key *k, struct random *r)
 {
     static const char *number[MOST_NUMBERS];
     int n = numbers_of(text, k, number);
     if (n < 2) return (struct mutant){NULL, false};
-    int i = (int)random_below(r, (uint64_t)n - 1), j = i + 1 + (int)random_below(r, (uint64_t)(n - i - 1));
+    int i = (int)random_below(r, (uint64_t)n - 1),
+        j = i + 1 + (int)random_below(r, (uint64_t)(n - i - 1));
     char a[40], b[40];
     snprintf(a, sizeof a, "%.*s", (int)(vector_text_end(number[i]) - number[i]), number[i]);
     snprintf(b, sizeof b, "%.*s", (int)(vector_text_end(number[j]) - number[j]), number[j]);
     char *once = vector_text_put(text, number[j], strlen(b), a);
     struct mutant m = {vector_text_put(once, once + (number[i] - text), strlen(a), b),
-                       matters(x, k->quantity, i, strtod(b, NULL)) || matters(x, k->quantity, j, strtod(a, NULL))};
+                       matters(x, k->quantity, i, strtod(b, NULL)) ||
+                           matters(x, k->quantity, j, strtod(a, NULL))};
     free(once);
     return m;
 }
 
-/* A key that no reader knows: two neighbouring letters exchanged, or for "dropped" the answer's key is renamed to a
- * remark's and the remark's to nothing, which is what a file without the answer looks like to the reader. */
-static struct mutant key_mutant(const char *text, const struct answer_key *k, enum mutation mutation)
+/* A key that no reader knows: two neighbouring letters exchanged, or for "dropped" the answer's key
+ * is renamed to a remark's and the remark's to nothing, which is what a file without the answer
+ * looks like to the reader. */
+static struct mutant key_mutant(const char *text, const struct answer_key *k,
+                                enum mutation mutation)
 {
     const char *at = vector_text_key(k->inside ? vector_text_key(text, k->inside) : text, k->key);
     if (!at) return (struct mutant){NULL, false};
@@ -324,7 +345,8 @@ static struct mutant key_mutant(const char *text, const struct answer_key *k, en
         const char *note = vector_text_key(text, "note");
         char *without = note ? vector_text_put(text, note, 6, "\"source\"") : strdup(text);
         at = vector_text_key(k->inside ? vector_text_key(without, k->inside) : without, k->key);
-        char *dropped = vector_text_put(without, at, length, k->inside ? "\"nothing\"" : "\"note\"");
+        char *dropped =
+            vector_text_put(without, at, length, k->inside ? "\"nothing\"" : "\"note\"");
         free(without);
         return (struct mutant){dropped, true};
     }
@@ -388,7 +410,8 @@ static void mutate_file(const char *path, int each, struct random *r, struct tal
         t->killed[mutation] += killed;
         t->mattered += m.matters;
         t->mattered_killed += m.matters && killed;
-        if (m.matters && !killed) fprintf(stderr, "%s: %s of %s survives\n", path, mutation_name[mutation], k->key);
+        if (m.matters && !killed)
+            fprintf(stderr, "%s: %s of %s survives\n", path, mutation_name[mutation], k->key);
         free(m.text);
     }
     free(text);
@@ -399,8 +422,10 @@ static void mutants_are_killed(void **state)
 {
     (void)state;
     static const char *const file[] = {
-        "closed_fourbar", "closed_two_4R_point3", "fext_serial_n0007", "float_rev_n0008", "serial_mixed_n0007",
-        "serial_rev_n0003", "serial_sph_n0012", "tree_random_n0015", "x_massless_n0014", "x_massratio_up_n0013",
+        "closed_fourbar", "closed_two_4R_point3", "fext_serial_n0007", "float_rev_n0008",
+        "serial_mixed_n0007",
+        "serial_rev_n0003", "serial_sph_n0012", "tree_random_n0015", "x_massless_n0014",
+        "x_massratio_up_n0013",
         "x_tinylinks_n0012", "x_fourbar_changepoint"};
     struct random r = random_make(2026, 11, 22);
     struct tally t = {0};
@@ -411,8 +436,8 @@ static void mutants_are_killed(void **state)
     }
     for (int k = 0; k < MUTATIONS; k++)
         printf("  %-12s %3d of %3d mutants killed\n", mutation_name[k], t.killed[k], t.made[k]);
-    printf("  of %d that change an answer by more than ten tolerances, or a key, %d: %.1f %%\n", t.mattered,
-           t.mattered_killed, 100.0 * t.mattered_killed / t.mattered);
+    printf("  of %d that change an answer by more than ten tolerances, or a key, %d: %.1f %%\n",
+           t.mattered, t.mattered_killed, 100.0 * t.mattered_killed / t.mattered);
     assert_true(t.mattered > 300);
     assert_int_equal(t.mattered_killed, t.mattered);
 }

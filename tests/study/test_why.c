@@ -218,8 +218,10 @@ static void derivatives_with_contention_are_near(void **state)
     assert_true(near > asked * 8 / 10);
 }
 
-/* The same run without recording has the same digest, so that what explains a run changes nothing. */
-static void assert_same_unrecorded(const struct run_spec *spec, const struct run_result *recorded, struct arena *a)
+/* The same run without recording has the same digest, so that what explains a run changes
+ * nothing. */
+static void assert_same_unrecorded(const struct run_spec *spec, const struct run_result *recorded,
+                                   struct arena *a)
 {
     struct run_spec plain = *spec;
     struct run_result r;

@@ -17,7 +17,8 @@ const char *vector_text_end(const char *at)
     return at + strspn(at, "+-0123456789.eE");
 }
 
-int vector_text_numbers(const char *text, const char *key, const char *from, const char **number, int room)
+int vector_text_numbers(const char *text, const char *key, const char *from, const char **number,
+                        int room)
 {
     const char *s = vector_text_key(from ? from : text, key);
     int depth = 0, n = 0;

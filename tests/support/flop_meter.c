@@ -24,24 +24,24 @@ struct work flop_meter_stop(void)
 }
 
 /* The operation of two operands called `name` in the library, counted in `field`. */
-#define BINARY(name, field)                                                                                            \
-    quad __real_##name(quad x, quad y);                                                                                \
-    quad __wrap_##name(quad x, quad y);                                                                                \
-    quad __wrap_##name(quad x, quad y)                                                                                 \
-    {                                                                                                                  \
-        executed.field += running == 1;                                                                                \
-        return __real_##name(x, y);                                                                                    \
+#define BINARY(name, field)                                                                        \
+    quad __real_##name(quad x, quad y);                                                            \
+    quad __wrap_##name(quad x, quad y);                                                            \
+    quad __wrap_##name(quad x, quad y)                                                             \
+    {                                                                                              \
+        executed.field += running == 1;                                                            \
+        return __real_##name(x, y);                                                                \
     }
-#define UNARY(name, field)                                                                                             \
-    quad __real_##name(quad x);                                                                                        \
-    quad __wrap_##name(quad x);                                                                                        \
-    quad __wrap_##name(quad x)                                                                                         \
-    {                                                                                                                  \
-        executed.field += running == 1;                                                                                \
-        running--; /* what it does inside is its own business */                                                       \
-        const quad y = __real_##name(x);                                                                               \
-        running++;                                                                                                     \
-        return y;                                                                                                      \
+#define UNARY(name, field)                                                                         \
+    quad __real_##name(quad x);                                                                    \
+    quad __wrap_##name(quad x);                                                                    \
+    quad __wrap_##name(quad x)                                                                     \
+    {                                                                                              \
+        executed.field += running == 1;                                                            \
+        running--; /* what it does inside is its own business */                                   \
+        const quad y = __real_##name(x);                                                           \
+        running++;                                                                                 \
+        return y;                                                                                  \
     }
 
 BINARY(__addtf3, flop)
@@ -53,24 +53,24 @@ UNARY(sinq, trig)
 UNARY(cosq, trig)
 
 /* What prepares a model: not counted. */
-#define PREPARATION(type, name, parameters, arguments)                                                                 \
-    type __real_##name parameters;                                                                                     \
-    type __wrap_##name parameters;                                                                                     \
-    type __wrap_##name parameters                                                                                      \
-    {                                                                                                                  \
-        running--;                                                                                                     \
-        type result = __real_##name arguments;                                                                         \
-        running++;                                                                                                     \
-        return result;                                                                                                 \
+#define PREPARATION(type, name, parameters, arguments)                                             \
+    type __real_##name parameters;                                                                 \
+    type __wrap_##name parameters;                                                                 \
+    type __wrap_##name parameters                                                                  \
+    {                                                                                              \
+        running--;                                                                                 \
+        type result = __real_##name arguments;                                                     \
+        running++;                                                                                 \
+        return result;                                                                             \
     }
-#define PREPARATION_VOID(name, parameters, arguments)                                                                  \
-    void __real_##name parameters;                                                                                     \
-    void __wrap_##name parameters;                                                                                     \
-    void __wrap_##name parameters                                                                                      \
-    {                                                                                                                  \
-        running--;                                                                                                     \
-        __real_##name arguments;                                                                                       \
-        running++;                                                                                                     \
+#define PREPARATION_VOID(name, parameters, arguments)                                              \
+    void __real_##name parameters;                                                                 \
+    void __wrap_##name parameters;                                                                 \
+    void __wrap_##name parameters                                                                  \
+    {                                                                                              \
+        running--;                                                                                 \
+        __real_##name arguments;                                                                   \
+        running++;                                                                                 \
     }
 
 PREPARATION(const void *, bodies_make_f128, (const void *m, void *a), (m, a))

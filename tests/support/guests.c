@@ -113,7 +113,8 @@ static void rank_main(void *argument)
 
 bool guests_run(const char *path, int nrank, int n, char **argument, struct guests *g)
 {
-    static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, take_output, fail_run, NULL};
+    static const struct loader_hooks hooks = {now_ps,      elapse_ps, sleep_ps,
+                                              take_output, fail_run,  NULL};
     *g = (struct guests){.failed_rank = -1};
     assert_true(nrank <= GUEST_RANKS);
     struct loader_template *t = loader_open(path, &g->error);

@@ -61,11 +61,13 @@ static void add_baseline(struct run_result *r, const char *name, double seconds)
 
 struct run_result made_result(struct arena *a, const struct run_spec *spec)
 {
-    static const char *const stage[] = {"Pre-processing", "NE[1]", "NE[2]", "NE[3]", "CFA[1]", "CFA[2]", "CFA[3]"};
+    static const char *const stage[] = {"Pre-processing", "NE[1]",  "NE[2]", "NE[3]",
+                                        "CFA[1]",         "CFA[2]", "CFA[3]"};
     double n = spec->model.nbody, p = spec->nrank;
     struct run_result r = {.status = RUN_OK, .nbody = spec->model.nbody, .nu = spec->model.nbody};
     bool contended = spec->machine.network.level != LEVEL_LOGGP;
-    r.makespan_ps = (int64_t)(1e12 * (80e-6 * n / p + 115e-6 * log2(p + 1) + (contended ? 2e-9 * p * p : 0)));
+    r.makespan_ps =
+        (int64_t)(1e12 * (80e-6 * n / p + 115e-6 * log2(p + 1) + (contended ? 2e-9 * p * p : 0)));
     r.nrank = spec->nrank;
     r.nstage = 7;
     for (int i = 0; i < 7; i++) text_copy(r.stage_name[i], sizeof r.stage_name[i], stage[i]);
@@ -101,15 +103,18 @@ void made_spans(struct run_result *r, struct arena *a)
         int64_t now = 0;
         for (int i = 0; i < r->nstage; i++) {
             int64_t length = r->makespan_ps / r->nstage;
-            const int64_t end[] = {length / 2 + 1000 * k, length / 2 + 1000 * k + length / 10, length * 9 / 10, length};
+            const int64_t end[] = {length / 2 + 1000 * k, length / 2 + 1000 * k + length / 10,
+                                   length * 9 / 10, length};
             const enum span_kind kind[] = {SPAN_COMPUTE, SPAN_SEND, SPAN_WAIT, SPAN_RECV};
             int64_t begin = now;
             for (int j = 0; j < 4; j++) {
                 bool sends = kind[j] == SPAN_SEND, receives = kind[j] == SPAN_RECV;
                 int64_t pair = (int64_t)i * r->nrank;
                 r->span[r->nspan++] = (struct span){
-                    .rank = k, .stage = i, .kind = kind[j], .begin_ps = begin, .end_ps = now + end[j],
-                    .peer = kind[j] == SPAN_COMPUTE ? -1 : k ^ 1, .bytes = sends || receives ? 288 : 0,
+                    .rank = k, .stage = i, .kind = kind[j], .begin_ps = begin,
+                    .end_ps = now + end[j],
+                    .peer = kind[j] == SPAN_COMPUTE ? -1 : k ^ 1,
+                    .bytes = sends || receives ? 288 : 0,
                     .message = sends ? pair + k : receives ? pair + (k ^ 1) : -1};
                 begin = now + end[j];
             }

@@ -71,7 +71,8 @@ static int64_t later(int64_t a, int64_t b) { return a > b ? a : b; }
 static void depart(struct rank *self, int64_t bytes, int64_t there[CLOCKS])
 {
     for (int k = 0; k < CLOCKS; k++)
-        there[k] = self->out_free[k] = later(self->clock[k], self->out_free[k]) + (k == 0 ? 1 : bytes);
+        there[k] = self->out_free[k] =
+            later(self->clock[k], self->out_free[k]) + (k == 0 ? 1 : bytes);
 }
 
 static void deliver(struct rank *to, struct comm_request *r, const void *data, int64_t bytes,
@@ -81,10 +82,12 @@ static void deliver(struct rank *to, struct comm_request *r, const void *data, i
     if (bytes > 0) memcpy(r->buffer, data, (size_t)bytes);
     r->active = 0;
     for (int k = 0; k < CLOCKS; k++)
-        to->clock[k] = to->in_free[k] = later(later(to->clock[k], there[k]), to->in_free[k] + (k == 0 ? 1 : bytes));
+        to->clock[k] = to->in_free[k] =
+            later(later(to->clock[k], there[k]), to->in_free[k] + (k == 0 ? 1 : bytes));
 }
 
-static void send_now(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
+static void send_now(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                     struct comm_request *r)
 {
     struct rank *self = (struct rank *)c;
     struct many_ranks *all = self->all;
@@ -105,17 +108,19 @@ static void send_now(struct comm *c, int dst, int64_t tag, const void *data, int
     }
     struct message *m = message_take(all, bytes);
     m->next = NULL;
-    m->src = c->rank, m->tag = tag, m->bytes = bytes;
+    m->src = c->rank, m->tag = (int)tag, m->bytes = bytes;
     memcpy(m->there, there, sizeof there);
     if (bytes > 0) memcpy(m->data, data, (size_t)bytes);
     *to->end = m;
     to->end = &m->next;
 }
 
-static void post_receive(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
+static void post_receive(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes,
+                         struct comm_request *r)
 {
     CHECK(src >= 0 && src < c->size && src != c->rank && tag >= 0 && bytes >= 0);
-    *r = (struct comm_request){.buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .active = 1};
+    *r = (struct comm_request){
+        .buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .active = 1};
 }
 
 static void wait_for(struct comm *c, struct comm_request *r)
@@ -216,8 +221,9 @@ struct many_ranks_result many_ranks_run(int nrank, many_ranks_program *program, 
     return many_ranks_publishing(nrank, program, context, NULL, 0);
 }
 
-struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
-                                               const struct comm_output *output, int noutput)
+struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program,
+                                               void *context, const struct comm_output *output,
+                                               int noutput)
 {
     struct err e = {0};
     struct many_ranks all = {.n = nrank, .program = program, .context = context};
@@ -228,7 +234,8 @@ struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *pr
     for (int k = 0; k < nrank; k++) {
         struct rank *r = &all.rank[k];
         r->comm = (struct comm){
-            .type = &many_ranks_type, .rank = k, .size = nrank, .output = output, .noutput = noutput};
+            .type = &many_ranks_type, .rank = k, .size = nrank, .output = output,
+            .noutput = noutput};
         r->all = &all;
         r->end = &r->first;
         r->fiber = fiber_start(all.pool, k, start, r);

@@ -1,6 +1,8 @@
-/* many_ranks.h - comm.h for many ranks on one host thread without any simulator: fibers, a ready queue, plain copies.
+/* many_ranks.h - comm.h for many ranks on one host thread without any simulator: fibers, a ready
+ * queue, plain copies.
  *
- * No clocks, no network: messages arrive at once. What a kernel costs here is what it costs by itself. */
+ * No clocks, no network: messages arrive at once. What a kernel costs here is what it costs by
+ * itself. */
 #ifndef TESTS_SUPPORT_MANY_RANKS_H
 #define TESTS_SUPPORT_MANY_RANKS_H
 
@@ -19,8 +21,8 @@ struct many_ranks_result {
     int64_t unread;                            /* messages that nobody received */
     int blocked;                               /* ranks that wait forever: a deadlock unless 0 */
     int64_t stack_bytes;                       /* deepest stack */
-    /* When all is done if a rank sends one message and receives one at a time, each takes one round, or a unit of time
-     * for each of its bytes, and nothing else takes any. */
+    /* When all is done if a rank sends one message and receives one at a time, each takes one
+     * round, or a unit of time for each of its bytes, and nothing else takes any. */
     int64_t rounds, path;
 };
 
@@ -30,7 +32,8 @@ typedef void many_ranks_program(struct comm *c, void *context);
 struct many_ranks_result many_ranks_run(int nrank, many_ranks_program *program, void *context);
 
 /* many_ranks_publishing: the same, with room for what the ranks publish (comm_publish). */
-struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
-                                               const struct comm_output *output, int noutput);
+struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program,
+                                               void *context, const struct comm_output *output,
+                                               int noutput);
 
 #endif

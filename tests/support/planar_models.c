@@ -24,8 +24,10 @@ static void turn(const double *q, bool back, const double *x, double *y)
     const double s = back ? -1 : 1, w = q[3], u[3] = {s * q[0], s * q[1], s * q[2]};
     const double t[3] = {2 * (u[1] * x[2] - u[2] * x[1]), 2 * (u[2] * x[0] - u[0] * x[2]),
                          2 * (u[0] * x[1] - u[1] * x[0])};
-    const double c[3] = {u[1] * t[2] - u[2] * t[1], u[2] * t[0] - u[0] * t[2], u[0] * t[1] - u[1] * t[0]};
-    const double result[3] = {x[0] + w * t[0] + c[0], x[1] + w * t[1] + c[1], x[2] + w * t[2] + c[2]};
+    const double c[3] = {u[1] * t[2] - u[2] * t[1], u[2] * t[0] - u[0] * t[2],
+                         u[0] * t[1] - u[1] * t[0]};
+    const double result[3] = {x[0] + w * t[0] + c[0], x[1] + w * t[1] + c[1],
+                              x[2] + w * t[2] + c[2]};
     memcpy(y, result, sizeof result);
 }
 
@@ -46,8 +48,8 @@ static void inertia(struct random *r, double *j)
     for (int i = 0; i < 9; i++) b[i] = random_uniform(r, -0.5, 0.5);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            s[3 * i + k] =
-                b[3 * i] * b[3 * k] + b[3 * i + 1] * b[3 * k + 1] + b[3 * i + 2] * b[3 * k + 2] + (i == k ? 0.05 : 0);
+            s[3 * i + k] = b[3 * i] * b[3 * k] + b[3 * i + 1] * b[3 * k + 1] +
+                           b[3 * i + 2] * b[3 * k + 2] + (i == k ? 0.05 : 0);
     const double trace = s[0] + s[4] + s[8];
     const double full[6] = {trace - s[0], -s[1], -s[2], trace - s[4], -s[5], trace - s[8]};
     memcpy(j, full, sizeof full);
@@ -67,27 +69,29 @@ static void plane(uint64_t seed, double *x, double *y, double *n)
 /* The first of mixed joints turns, so that there is only one plane. */
 static enum model_joint pick_joint(const struct planar_options *o, bool first, struct random *r)
 {
-    static const enum model_joint mixed[] = {JOINT_REVOLUTE, JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_PLANAR,
-                                             JOINT_FIXED};
+    static const enum model_joint mixed[] = {JOINT_REVOLUTE, JOINT_REVOLUTE, JOINT_PRISMATIC,
+                                             JOINT_PLANAR, JOINT_FIXED};
     return o->joint != JOINT_MIXED ? o->joint : first ? JOINT_REVOLUTE : mixed[random_below(r, 5)];
 }
 
 /* Axes of body `def` whose frame is turned by q in the base. */
-static void set_axes(struct body_def *def, struct random *r, double tilt, const double *q, const double *plane_x,
-                     const double *plane_y, const double *normal)
+static void set_axes(struct body_def *def, struct random *r, double tilt, const double *q,
+                     const double *plane_x, const double *plane_y, const double *normal)
 {
     const double angle = random_uniform(r, -3, 3), sign = random_below(r, 2) ? 1 : -1;
     double across[3], axis[3];
     for (int k = 0; k < 3; k++) {
         across[k] = cos(angle) * plane_x[k] + sin(angle) * plane_y[k];
-        axis[k] = def->joint == JOINT_PRISMATIC ? across[k] + tilt * normal[k] : sign * normal[k] + tilt * across[k];
+        axis[k] = def->joint == JOINT_PRISMATIC ? across[k] + tilt * normal[k]
+                                                : sign * normal[k] + tilt * across[k];
     }
     turn(q, true, axis, def->axis);
     for (int k = 0; k < 3; k++) across[k] -= sign * tilt * normal[k];
     if (def->joint == JOINT_PLANAR) turn(q, true, across, def->axis2);
 }
 
-static void add_loops(struct model *m, const struct planar_options *o, double (*pose)[4], const double *normal)
+static void add_loops(struct model *m, const struct planar_options *o, double (*pose)[4],
+                      const double *normal)
 {
     for (int l = 0; l < o->loops; l++) {
         struct random r = random_make(o->seed, 3, (uint64_t)(o->twins ? l / 2 : l));
@@ -97,7 +101,8 @@ static void add_loops(struct model *m, const struct planar_options *o, double (*
         def.body_a = random_below(&r, 3) ? (int)random_below(&r, (uint64_t)o->n) : -1;
         if (def.body_a == def.body_b) def.body_a = -1;
         snprintf(def.name, sizeof def.name, "l%d", l);
-        unit_quaternion(&r, frame); /* a frame whose z (prismatic: y) is the normal: the shortest turn there */
+        /* a frame whose z (prismatic: y) is the normal: the shortest turn there */
+        unit_quaternion(&r, frame);
         const double from[3] = {0, def.joint == JOINT_PRISMATIC, def.joint == JOINT_REVOLUTE};
         z[0] = from[1] * normal[2] - from[2] * normal[1];
         z[1] = from[2] * normal[0] - from[0] * normal[2];
@@ -139,10 +144,12 @@ const struct model *planar_model(const struct planar_options *o, struct arena *a
             def.placement.p[k] = random_uniform(&r, -1, 1);
             def.com[k] = random_uniform(&r, -0.5, 0.5);
         }
-        if (def.joint != JOINT_FIXED) set_axes(&def, &r, i == o->n - 1 ? o->tilt : 0, pose[i], x, y, normal);
+        if (def.joint != JOINT_FIXED)
+            set_axes(&def, &r, i == o->n - 1 ? o->tilt : 0, pose[i], x, y, normal);
         def.mass = random_uniform(&r, 0.5, 2);
         inertia(&r, def.inertia);
-        if (o->springs && joint_nu(def.joint) == 1) def.stiffness = 3, def.rest = 0.2, def.damping = 0.1;
+        if (o->springs && joint_nu(def.joint) == 1)
+            def.stiffness = 3, def.rest = 0.2, def.damping = 0.1;
         if (model_add_body(m, &def, &e) < 0) abort();
     }
     if (o->loops > 0) add_loops(m, o, pose, normal);

@@ -1,4 +1,5 @@
-/* planar_models.h - seeded random planar scenes whose plane, frames and offsets lie anyhow in space. */
+/* planar_models.h - seeded random planar scenes whose plane, frames and offsets lie anyhow in
+ * space. */
 #ifndef TESTS_SUPPORT_PLANAR_MODELS_H
 #define TESTS_SUPPORT_PLANAR_MODELS_H
 
@@ -16,8 +17,8 @@ struct planar_options {
     uint64_t seed;
 };
 
-/* planar_model: body frames turned anyhow, offsets and centres of mass off the plane, full inertias, half of the axes
- * against the normal. */
+/* planar_model: body frames turned anyhow, offsets and centres of mass off the plane, full
+ * inertias, half of the axes against the normal. */
 const struct model *planar_model(const struct planar_options *o, struct arena *a);
 
 /* planar_state: random coordinates, rates, accelerations, forces; gravity is the model's. */

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/* scratch_make: make a new empty folder below $TMPDIR or where the system keeps such; its name in `folder`. */
+/* scratch_make: make a new empty folder below $TMPDIR or where the system keeps such; its name in
+ * `folder`. */
 void scratch_make(char *folder, size_t size);
 
 /* scratch_path: "folder/name" into `path`; returns path. */

@@ -1,4 +1,5 @@
-/* topologies.h - one small network of every family and of every corner of a family, for tests that hold on all. */
+/* topologies.h - one small network of every family and of every corner of a family, for tests that
+ * hold on all. */
 #ifndef TESTS_TOPOLOGIES_H
 #define TESTS_TOPOLOGIES_H
 

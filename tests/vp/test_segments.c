@@ -1,4 +1,5 @@
-/* test_segments.c - message software by size: every segment's times by hand, at every level the same. */
+/* test_segments.c - message software by size: every segment's times by hand, at every level the
+ * same. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +19,8 @@ static struct machine_spec line_of_nodes(enum network_level level)
 {
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m.network = (struct network_spec){.level = level,
                                       .link_bandwidth = 1e9,
@@ -27,16 +29,22 @@ static struct machine_spec line_of_nodes(enum network_level level)
                                       .flit_bytes = FLIT,
                                       .virtual_channels = 1,
                                       .buffer_flits = 64};
-    m.software = (struct software_spec){.send_overhead = 1e-6, .recv_overhead = 2e-6, .gap = 3e-6, .eager_bytes = -1};
+    m.software = (struct software_spec){
+        .send_overhead = 1e-6, .recv_overhead = 2e-6, .gap = 3e-6, .eager_bytes = -1};
     return m;
 }
 
-static const struct software_segment nothing = {.send_overhead = -1, .send_copy = -1, .recv_overhead = -1,
-                                                .recv_copy = -1, .latency = -1, .gap = -1, .gap_per_byte = -1,
+static const struct software_segment nothing = {.send_overhead = -1,
+                                                .send_copy = -1,
+                                                .recv_overhead = -1,
+                                                .recv_copy = -1,
+                                                .latency = -1,
+                                                .gap = -1,
+                                                .gap_per_byte = -1,
                                                 .rendezvous_latency = -1};
 
-/* Up to 999 B constant; then copies, 600 ns more of the interfaces, and 2 ns a byte at the port; from 8000 B
- * hand-shakes; from 16000 B the sender is held and the copies are gone. */
+/* Up to 999 B constant; then copies, 600 ns more of the interfaces, and 2 ns a byte at the port;
+ * from 8000 B hand-shakes; from 16000 B the sender is held and the copies are gone. */
 static void four_segments(struct software_spec *s)
 {
     s->nsegment = 4;
@@ -61,7 +69,8 @@ struct outcome {
     struct run_result r;
 };
 
-static struct outcome go(const struct machine_spec *m, int nrank, world_program *program, void *context)
+static struct outcome go(const struct machine_spec *m, int nrank, world_program *program,
+                         void *context)
 {
     struct outcome o = {.arena = arena_create()};
     struct record_spec record = {0};
@@ -89,8 +98,8 @@ static void one_message(struct comm *c, void *context)
     }
 }
 
-/* Two resources to the neighbour; all flits but the first at `flit` ps each, which is 16 ns where the interfaces take
- * longer too. */
+/* Two resources to the neighbour; all flits but the first at `flit` ps each, which is 16 ns where
+ * the interfaces take longer too. */
 static int64_t wire(int64_t bytes, int64_t flit)
 {
     const int64_t latency = flit == 16000 ? 600000 : 0;
@@ -114,7 +123,8 @@ static void by_hand(int64_t bytes, int64_t *sender, int64_t *receiver)
         *receiver = *sender + wire(bytes, 16000) + 2000000 + 2000 * bytes;
     } else {
         *sender = 1000000 + zero + zero;
-        if (*sender < 1000000 + 3000000) *sender = 1000000 + 3000000; /* the gap after the request */
+        /* the gap after the request */
+        if (*sender < 1000000 + 3000000) *sender = 1000000 + 3000000;
         *sender += wire(bytes, 8000);
         *receiver = *sender + 5000000;
     }
@@ -123,7 +133,8 @@ static void by_hand(int64_t bytes, int64_t *sender, int64_t *receiver)
 static void every_segment_takes_its_own_time_at_every_level(void **state)
 {
     (void)state;
-    static const int64_t sizes[] = {0, 1, 8, 999, 1000, 1001, 7999, 8000, 8001, 15999, 16000, 16001, 40000};
+    static const int64_t sizes[] = {0,    1,    8,     999,   1000,  1001, 7999,
+                                    8000, 8001, 15999, 16000, 16001, 40000};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         for (int level = LEVEL_LOGGP; level <= LEVEL_AUTO; level++) {
             struct machine_spec m = line_of_nodes((enum network_level)level);
@@ -132,12 +143,13 @@ static void every_segment_takes_its_own_time_at_every_level(void **state)
             struct outcome o = go(&m, 2, one_message, &bytes);
             by_hand(bytes, &sender, &receiver);
             if (o.r.finish_ps[0] != sender || o.r.finish_ps[1] != receiver)
-                fail_msg("level %d, %lld B: %lld and %lld, not %lld and %lld", level, (long long)bytes,
-                         (long long)o.r.finish_ps[0], (long long)o.r.finish_ps[1], (long long)sender,
-                         (long long)receiver);
+                fail_msg("level %d, %lld B: %lld and %lld, not %lld and %lld", level,
+                         (long long)bytes, (long long)o.r.finish_ps[0], (long long)o.r.finish_ps[1],
+                         (long long)sender, (long long)receiver);
             const struct stage_time *s = &o.r.stage[0];
             assert_int_equal(s->contention_ps, 0);
-            if (bytes >= 16000) assert_int_equal(s->send_ps, sender); /* held by its software, not waiting */
+            /* held by its software, not waiting */
+            if (bytes >= 16000) assert_int_equal(s->send_ps, sender);
             assert_int_equal(o.r.stage[o.r.nstage].contention_ps, 0);
             arena_destroy(o.arena);
         }
@@ -153,8 +165,8 @@ static void two_messages(struct comm *c, void *context)
     }
 }
 
-/* The port is taken by the first message as its own segment says: its flits at its own rate, and its own gap after the
- * last one begins. What one waits for one's own message is no contention. */
+/* The port is taken by the first message as its own segment says: its flits at its own rate, and
+ * its own gap after the last one begins. What one waits for one's own message is no contention. */
 static void a_gap_is_that_of_the_message_before_it(void **state)
 {
     (void)state;
@@ -164,10 +176,13 @@ static void a_gap_is_that_of_the_message_before_it(void **state)
             four_segments(&m.software);
             int64_t bytes[2] = {order ? 1600 : 0, order ? 0 : 1600};
             struct outcome o = go(&m, 2, two_messages, bytes);
-            int64_t first = 1000000 + (order ? 1600000 : 0), second = first + 1000000 + (order ? 0 : 1600000);
-            int64_t port = first + (order ? 199 * 16000 + 7000000 : 3000000), at = second > port ? second : port;
+            int64_t first = 1000000 + (order ? 1600000 : 0),
+                    second = first + 1000000 + (order ? 0 : 1600000);
+            int64_t port = first + (order ? 199 * 16000 + 7000000 : 3000000),
+                    at = second > port ? second : port;
             int64_t arrived = at + (order ? wire(0, 8000) : wire(1600, 16000));
-            int64_t before = first + wire(bytes[0], order ? 16000 : 8000) + 2000000 + (order ? 3200000 : 0);
+            int64_t before =
+                first + wire(bytes[0], order ? 16000 : 8000) + 2000000 + (order ? 3200000 : 0);
             int64_t end = (arrived > before ? arrived : before) + 2000000 + (order ? 0 : 3200000);
             assert_int_equal(o.r.finish_ps[1], end);
             assert_int_equal(o.r.stage[o.r.nstage].contention_ps, 0);
@@ -196,7 +211,8 @@ static uint64_t digest_of(const struct machine_spec *m)
     return digest;
 }
 
-/* One segment that gives nothing is the machine without segments; short, eager and rendezvous messages are segments. */
+/* One segment that gives nothing is the machine without segments; short, eager and rendezvous
+ * messages are segments. */
 static void segments_say_what_the_limits_say(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* test_shared.c - one run shared by the processes of a job: whatever their number, process 0 has every number and every
- * word of a run on one. The processes are threads here, and their messages queues in memory (a table of hosts.h). */
+/* test_shared.c - one run shared by the processes of a job: whatever their number, process 0 has
+ * every number and every word of a run on one. The processes are threads here, and their messages
+ * queues in memory (a table of hosts.h). */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -58,7 +59,8 @@ static bool send_done(struct hosts_request *r, bool *done)
 static struct parcel **find(int from, int tag)
 {
     struct parcel **p = &box[me].first;
-    while (*p && ((from != HOSTS_ANY && (*p)->from != from) || (tag != HOSTS_ANY && (*p)->tag != tag)))
+    while (*p &&
+           ((from != HOSTS_ANY && (*p)->from != from) || (tag != HOSTS_ANY && (*p)->tag != tag)))
         p = &(*p)->next;
     return p;
 }
@@ -87,7 +89,8 @@ static bool receive(const struct hosts_message *m, void *data)
 }
 
 static const struct hosts_calls calls = {.table = HOSTS_TABLE, .library = "threads", .send = send,
-                                         .send_begin = send_begin, .send_done = send_done, .look = look,
+                                         .send_begin = send_begin, .send_done = send_done,
+                                         .look = look,
                                          .receive = receive};
 
 /* --- runs --- */
@@ -98,7 +101,8 @@ static struct machine_spec crossbar(int nodes)
 {
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m.network = (struct network_spec){.level = LEVEL_LOGGP,
                                       .link_bandwidth = 1e9,
@@ -138,9 +142,16 @@ static void *execute(void *argument)
     err_clear(&e);
     me = p->hosts.rank;
     p->out.arena = arena_create();
-    const struct world_load load = {.nrank = p->nrank, .program = p->program, .nstage = 2, .stage_name = stage_name,
-                                    .largest_message = -1, .threads = p->threads, .output = &output, .noutput = 1,
-                                    .hosts = p->alone ? NULL : &p->hosts, .job_run = p->number};
+    const struct world_load load = {.nrank = p->nrank,
+                                    .program = p->program,
+                                    .nstage = 2,
+                                    .stage_name = stage_name,
+                                    .largest_message = -1,
+                                    .threads = p->threads,
+                                    .output = &output,
+                                    .noutput = 1,
+                                    .hosts = p->alone ? NULL : &p->hosts,
+                                    .job_run = p->number};
     if (!world_run(&m, &load, &record, 7, p->out.arena, &p->out.r, &e)) fail_msg("%s", e.text);
     return NULL;
 }
@@ -154,7 +165,10 @@ static void job(struct process *p, int size, world_program *program, int nrank, 
         box[i].end = &box[i].first;
     }
     for (int i = 0; i < size; i++) {
-        p[i] = (struct process){.hosts = {i, size, &calls}, .program = program, .nrank = nrank, .threads = threads,
+        p[i] = (struct process){.hosts = {i, size, &calls},
+                                .program = program,
+                                .nrank = nrank,
+                                .threads = threads,
                                 .number = number};
         assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
     }
@@ -180,8 +194,10 @@ static void every_number_of_processes(world_program *program, int nrank, enum ru
                 assert_int_equal(a->makespan_ps, b->makespan_ps);
                 assert_int_equal(a->messages, b->messages);
                 assert_int_equal(a->bytes, b->bytes);
-                assert_memory_equal(a->stage, b->stage, (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
-                assert_memory_equal(a->finish_ps, b->finish_ps, (size_t)a->nrank * sizeof *a->finish_ps);
+                assert_memory_equal(a->stage, b->stage,
+                                    (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
+                assert_memory_equal(a->finish_ps, b->finish_ps,
+                                    (size_t)a->nrank * sizeof *a->finish_ps);
                 assert_int_equal(a->nlink, b->nlink);
                 assert_memory_equal(a->link, b->link, (size_t)a->nlink * sizeof *a->link);
                 assert_memory_equal(one.out.output, many[0].out.output, sizeof one.out.output);
@@ -270,7 +286,10 @@ static void a_failure_ends_all_processes(void **state)
             box[i].end = &box[i].first;
         }
         for (int i = 0; i < size; i++) {
-            p[i] = (struct process){.hosts = {i, size, &calls}, .program = too_long, .nrank = RANKS, .threads = 1,
+            p[i] = (struct process){.hosts = {i, size, &calls},
+                                    .program = too_long,
+                                    .nrank = RANKS,
+                                    .threads = 1,
                                     .number = number + size};
             assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
         }

@@ -1,5 +1,5 @@
-/* test_threads.c - one run on several host threads: whatever their number and whatever delays them, every number and
- * every word is that of one thread. */
+/* test_threads.c - one run on several host threads: whatever their number and whatever delays them,
+ * every number and every word is that of one thread. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -18,7 +18,8 @@ static struct machine_spec crossbar(int nodes)
 {
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m.network = (struct network_spec){.level = LEVEL_LOGGP,
                                       .link_bandwidth = 1e9,
@@ -53,8 +54,13 @@ static struct outcome go(world_program *program, int nrank, int threads, uint64_
     err_clear(&e);
     double *buffers = calloc((size_t)nrank * 2 * MOST, sizeof *buffers);
     assert_non_null(buffers);
-    const struct world_load load = {.nrank = nrank, .program = program, .context = buffers, .nstage = 2,
-                                    .stage_name = stage_name, .largest_message = -1, .threads = threads,
+    const struct world_load load = {.nrank = nrank,
+                                    .program = program,
+                                    .context = buffers,
+                                    .nstage = 2,
+                                    .stage_name = stage_name,
+                                    .largest_message = -1,
+                                    .threads = threads,
                                     .delays = delays};
     assert_null(world_alone(&m, &load, &record));
     if (!world_run(&m, &load, &record, 7, o.arena, &o.r, &e)) fail_msg("%s", e.text);
@@ -71,7 +77,8 @@ static void same(const struct run_result *a, const struct run_result *b)
     assert_int_equal(a->messages, b->messages);
     assert_int_equal(a->bytes, b->bytes);
     assert_int_equal(a->nlink, b->nlink);
-    assert_memory_equal(a->stage, b->stage, (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
+    assert_memory_equal(a->stage, b->stage,
+                        (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
     assert_memory_equal(a->finish_ps, b->finish_ps, (size_t)a->nrank * sizeof *a->finish_ps);
     if (a->nlink) assert_memory_equal(a->link, b->link, (size_t)a->nlink * sizeof *a->link);
 }
@@ -91,7 +98,8 @@ static void every_number_of_threads(world_program *program, int nrank, enum run_
     arena_destroy(one.arena);
 }
 
-/* Exchanges at all distances, of sizes of all classes, several under way between the same two ranks. */
+/* Exchanges at all distances, of sizes of all classes, several under way between the same two
+ * ranks. */
 static void exchanges(struct comm *c, void *context)
 {
     const int rank = comm_rank(c), size = comm_size(c);
@@ -146,8 +154,8 @@ static void barriers_are_the_same(void **state)
     every_number_of_threads(barriers, RANKS, RUN_OK);
 }
 
-/* One rank sends to all others for a long time before anybody answers: pools run empty at one side, and many messages
- * with one tag are under way to each, which must keep their order. */
+/* One rank sends to all others for a long time before anybody answers: pools run empty at one side,
+ * and many messages with one tag are under way to each, which must keep their order. */
 static void one_way(struct comm *c, void *context)
 {
     (void)context;
@@ -194,8 +202,8 @@ static void a_deadlock_is_explained_in_the_same_words(void **state)
     every_number_of_threads(stuck_at_a_barrier, RANKS, RUN_DEADLOCK);
 }
 
-/* Simulated time ends at several ranks. Which of them is told depends on the host (launch_run makes such a run again);
- * that the run has failed does not. */
+/* Simulated time ends at several ranks. Which of them is told depends on the host (launch_run makes
+ * such a run again); that the run has failed does not. */
 static void too_long(struct comm *c, void *context)
 {
     exchanges(c, context);
@@ -221,8 +229,13 @@ static void what_depends_on_order_says_so(void **state)
     (void)state;
     struct machine_spec m = crossbar(4), other;
     const struct record_spec nothing = {0}, spans = {.spans = true}, path = {.path = true};
-    struct world_load load = {.nrank = 4, .program = exchanges, .nstage = 2, .stage_name = stage_name,
-                              .largest_message = -1, .threads = 2}, changed;
+    struct world_load load = {.nrank = 4,
+                              .program = exchanges,
+                              .nstage = 2,
+                              .stage_name = stage_name,
+                              .largest_message = -1,
+                              .threads = 2},
+                      changed;
     assert_null(world_alone(&m, &load, &nothing));
     assert_non_null(strstr(world_alone(&m, &load, &spans), "timeline"));
     assert_non_null(strstr(world_alone(&m, &load, &path), "critical path"));

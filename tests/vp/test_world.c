@@ -1,4 +1,5 @@
-/* test_world.c - Virtual processors: exact times, exact accounts, matching, collectives, deadlock. */
+/* test_world.c - Virtual processors: exact times, exact accounts, matching, collectives,
+ * deadlock. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -16,7 +17,8 @@ static struct machine_spec crossbar(int nodes)
 {
     struct machine_spec m = {.name = "test"};
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
     m.network = (struct network_spec){.level = LEVEL_LOGGP,
                                       .link_bandwidth = 1e9,
@@ -37,7 +39,8 @@ struct outcome {
     struct run_result r;
 };
 
-static struct outcome go(const struct machine_spec *m, int nrank, world_program *program, void *context)
+static struct outcome go(const struct machine_spec *m, int nrank, world_program *program,
+                         void *context)
 {
     struct outcome o = {.arena = arena_create()};
     struct record_spec record = {.spans = true, .links = false};
@@ -77,8 +80,8 @@ static void exchange(struct comm *c, void *context)
     }
 }
 
-/* 5 us computing, o_s + 1000 x 1 ns, one resource of 100 ns, 300 ns at the ends, 999 B at 1 GB/s behind the first
- * (LogGP counts b - 1), o_r + 1000 x 2 ns. */
+/* 5 us computing, o_s + 1000 x 1 ns, one resource of 100 ns, 300 ns at the ends, 999 B at 1 GB/s
+ * behind the first (LogGP counts b - 1), o_r + 1000 x 2 ns. */
 static void a_message_takes_what_the_formula_says(void **state)
 {
     (void)state;
@@ -96,8 +99,8 @@ static void a_message_takes_what_the_formula_says(void **state)
     arena_destroy(o.arena);
 }
 
-/* Up to the limit a message saves its sender 700 ns, and its receiver pays the copy of short ones instead of the eager
- * one, per byte on top of every message's. */
+/* Up to the limit a message saves its sender 700 ns, and its receiver pays the copy of short ones
+ * instead of the eager one, per byte on top of every message's. */
 static void short_messages_cost_less_up_to_their_limit(void **state)
 {
     (void)state;
@@ -282,8 +285,8 @@ static void large_message(struct comm *c, void *context)
     assert_memory_equal(in, data, sizeof in);
 }
 
-/* Request and clearance each take one zero-byte trip of 300 ns (hop latency 0), then 1 us of software, then the data.
- */
+/* Request and clearance each take one zero-byte trip of 300 ns (hop latency 0), then 1 us of
+ * software, then the data. */
 static void a_large_message_shakes_hands_first(void **state)
 {
     (void)state;
@@ -293,7 +296,8 @@ static void a_large_message_shakes_hands_first(void **state)
     m.software.rendezvous_latency = 1e-6;
     for (int64_t late = 0; late <= 50000; late += 50000) {
         struct outcome o = go(&m, 2, large_message, &late);
-        int64_t sent = 2000000 + 5000000, asked = sent + 300000, matched = asked > late * 1000 ? asked : late * 1000;
+        int64_t sent = 2000000 + 5000000, asked = sent + 300000,
+                matched = asked > late * 1000 ? asked : late * 1000;
         int64_t cleared = matched + 1000000 + 300000, arrived = cleared + 300000 + 4999000;
         assert_int_equal(o.r.finish_ps[0], cleared);
         assert_int_equal(o.r.finish_ps[1], arrived + 3000000 + 10000000);
@@ -311,7 +315,8 @@ static void all_to_zero(struct comm *c, void *context)
         for (int i = 1; i < comm_size(c); i++) comm_recv(c, i, 1, b, 8);
 }
 
-/* Four senders at once: the server takes 10 us for each end, so the last send is done after 40 us at the least. */
+/* Four senders at once: the server takes 10 us for each end, so the last send is done after 40 us
+ * at the least. */
 static void the_kernel_server_serves_one_at_a_time(void **state)
 {
     (void)state;
@@ -320,7 +325,8 @@ static void the_kernel_server_serves_one_at_a_time(void **state)
     m.software.kernel_time = 10e-6;
     struct outcome o = go(&m, 5, all_to_zero, NULL);
     int64_t latest_send = 0, contention = 0;
-    for (int i = 1; i < 5; i++) latest_send = o.r.finish_ps[i] > latest_send ? o.r.finish_ps[i] : latest_send;
+    for (int i = 1; i < 5; i++)
+        latest_send = o.r.finish_ps[i] > latest_send ? o.r.finish_ps[i] : latest_send;
     for (int i = 0; i < 5 * o.r.nstage; i++) contention += o.r.stage[i].contention_ps;
     assert_true(latest_send >= 40000000);
     assert_true(contention >= 60000000);
@@ -386,7 +392,8 @@ static void background_traffic_slows_but_never_breaks(void **state)
     (void)state;
     struct machine_spec m = crossbar(16);
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.network.level = LEVEL_LINK;
     struct outcome quiet = go(&m, 16, traffic, NULL);
     m.noise.background_load = 0.5;
@@ -404,7 +411,8 @@ static void a_deadlock_is_seen_under_background_traffic(void **state)
     (void)state;
     struct machine_spec m = crossbar(6);
     m.topology = (struct topology_spec){
-        .family = TOPOLOGY_TORUS, .ndim = 1, .dims = {6}, .nodes_per_router = 1, .processors_per_node = 1};
+        .family = TOPOLOGY_TORUS, .ndim = 1, .dims = {6}, .nodes_per_router = 1,
+        .processors_per_node = 1};
     m.network.level = LEVEL_LINK;
     m.noise.background_load = 0.3;
     m.noise.background_bytes = 1000;

@@ -1,4 +1,5 @@
-/* boxes.h - a template and an inline function that two files share, so that the linker keeps one of each. */
+/* boxes.h - a template and an inline function that two files share, so that the linker keeps one of
+ * each. */
 #ifndef BOXES_H
 #define BOXES_H
 
@@ -14,7 +15,10 @@ template <typename T> struct box {
     }
 };
 
-__attribute__((noinline)) inline long boxed(long n) { return box<long>(n).squared() + box<int>(3).squared(); }
+__attribute__((noinline)) inline long boxed(long n)
+{
+    return box<long>(n).squared() + box<int>(3).squared();
+}
 
 long other_boxes(long n);
 

@@ -1,4 +1,5 @@
-/* control.c - C that makes a compiler use all its ways of going elsewhere; guest() returns a checksum. */
+/* control.c - C that makes a compiler use all its ways of going elsewhere; guest() returns a
+ * checksum. */
 #include <stdarg.h>
 #include <stdint.h>
 #include <string.h>
@@ -109,7 +110,8 @@ long guest(void)
     shared_count = 0;
     for (int i = 0; i < N; i++) values[i] = i * i;
     long sum = interpreted(code) + added(4, 3, 2.5, 8, 1.25) + fibonacci(7) + (long)product();
-    for (int i = 0; i < N; i++) sum = 3 * sum + chosen(i % 9) + step[i % 3](i) + (long)halved((unsigned)i);
+    for (int i = 0; i < N; i++)
+        sum = 3 * sum + chosen(i % 9) + step[i % 3](i) + (long)halved((unsigned)i);
     from.byte[71] = (char)sum;
     memcpy(&to, &from, sizeof to);
     return sum + to.byte[71] + (long)(wide((uint64_t)sum) % 1000003);
