@@ -40,6 +40,13 @@ const char *machine_idle_unless_hypercube(const struct run_spec *r)
                : "only a hypercube has Xpress links";
 }
 
+const char *machine_idle_unless_bundles(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_BUNDLES)
+               ? NULL
+               : "this topology has no bundles of parallel cables";
+}
+
 const char *machine_idle_unless_graph(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_LISTED)

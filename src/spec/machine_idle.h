@@ -13,6 +13,7 @@ const char *machine_idle_without_links(const struct run_spec *r);
 const char *machine_idle_unless_ring(const struct run_spec *r);
 const char *machine_idle_unless_dragonfly(const struct run_spec *r);
 const char *machine_idle_unless_hypercube(const struct run_spec *r);
+const char *machine_idle_unless_bundles(const struct run_spec *r);
 const char *machine_idle_unless_graph(const struct run_spec *r);
 const char *machine_idle_unless_tolerance(const struct run_spec *r);
 const char *machine_idle_above_packets(const struct run_spec *r);

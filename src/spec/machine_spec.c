@@ -50,7 +50,8 @@ static const struct field fields[] = {
      .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
      .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; "
             "fat-tree: [arity, levels]; dragonfly: [terminals per router, routers per group, "
-            "global links per router, groups]; others: [routers]"},
+            "global links per router, groups]; hyperx: routers in each dimension; others: "
+            "[routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH,
      AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
@@ -74,6 +75,10 @@ static const struct field fields[] = {
      .idle = machine_idle_unless_hypercube,
      .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 "
             "dimensions on one to the opposite router"},
+    {.key = "topology.bundle", .kind = FIELD_INT_LIST, AT(topology.bundle),
+     COUNT(topology.nbundle),
+     .min = 1, .max = 4096, .fallback = "[]", .idle = machine_idle_unless_bundles,
+     .doc = "hyperx: parallel cables between two routers, for each dimension; default: one"},
     /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink),
      .min = 0,

@@ -42,6 +42,8 @@ struct topology_spec {
     enum tie_rule tie;
     enum dragonfly_routing routing;
     bool xpress;                    /* Origin: further links on the routers' spare ports */
+    int nbundle;                    /* entries of bundle, 0: one cable everywhere */
+    int *bundle; /* hyperx: (nbundle) cables between two routers, by dimension; borrowed */
     int nlink;                      /* graph: number of undirected links, 0 otherwise */
     int (*link)[2]; /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
     int nlink_percent;              /* graph: 0, nlink or 2 nlink */

@@ -29,6 +29,8 @@
     X(TOPOLOGY_DRAGONFLY, "dragonfly", dragonfly, 4,                                               \
       size_count(size_count(t->dims[0], t->dims[1]), t->dims[3]),                                  \
       TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                       \
+    /* all routers that differ in one coordinate are joined (flattened butterfly)        */        \
+    X(TOPOLOGY_HYPERX, "hyperx", hyperx, 0, product(t->dims, t->ndim), TOPOLOGY_BUNDLES)           \
     /* routers and links given in the file */                                                      \
     X(TOPOLOGY_GRAPH, "graph", graph, 1, t->dims[0], TOPOLOGY_LISTED)
 
@@ -41,7 +43,8 @@ enum topology_trait {
     TOPOLOGY_SHARED = 16,   /* one resource for all: every network level does the same */
     TOPOLOGY_OWN_NODES = 32, /* dims say how many nodes a router has */
     TOPOLOGY_CHOOSES = 64,  /* several routes: topology.routing */
-    TOPOLOGY_LISTED = 128   /* links come from the file: topology.links */
+    TOPOLOGY_LISTED = 128,  /* links come from the file: topology.links */
+    TOPOLOGY_BUNDLES = 256  /* several cables between two routers: topology.bundle */
 };
 
 #endif

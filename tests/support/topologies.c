@@ -5,6 +5,8 @@ static const int petersen[15][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 0}, {0, 
                                     {3, 8}, {4, 9}, {5, 7}, {7, 9}, {9, 6}, {6, 8}, {8, 5}};
 static const int star_and_tail[6][2] = {{3, 0}, {3, 1}, {2, 3}, {3, 4}, {4, 5}, {6, 5}};
 
+static const int bundle_2_3[] = {2, 3};
+
 #define GRAPH(table) .nlink = sizeof(table) / sizeof *(table), .link = (int(*)[2])(table)
 #define ONE .nodes_per_router = 1, .processors_per_node = 1
 
@@ -61,6 +63,17 @@ static const struct named_topology all[] = {
     {"dragonfly 2 4 2, Valiant",
      {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, .routing = ROUTE_VALIANT, ONE},
      false},
+    {"hyperx 4x3x2", {.family = TOPOLOGY_HYPERX, .ndim = 3, .dims = {4, 3, 2}, ONE}, true},
+    {"hyperx 3x4, bundles, 2 nodes per router",
+     {.family = TOPOLOGY_HYPERX,
+      .ndim = 2,
+      .dims = {3, 4},
+      .nbundle = 2,
+      .bundle = (int *)bundle_2_3,
+      .nodes_per_router = 2,
+      .processors_per_node = 1},
+     true},
+    {"hyperx 7", {.family = TOPOLOGY_HYPERX, .ndim = 1, .dims = {7}, ONE}, true},
     {"Petersen graph", {.family = TOPOLOGY_GRAPH, .ndim = 1,
      .dims = {10}, GRAPH(petersen), ONE}, true},
     {"star with a tail", {.family = TOPOLOGY_GRAPH, .ndim = 1,
