@@ -15,6 +15,7 @@ static void run(struct comm *c)
     /* GAP: all ranks send first, and nobody receives. Change the order. */
     send_synchronously(c, next, &own);
     comm_recv(c, last, 0, &got, 8);
+    /* End of the gap. */
     comm_publish(c, 0, me, 1, &got);
 }
 

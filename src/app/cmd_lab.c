@@ -14,10 +14,13 @@ static const char doc[] =
     "\vEach lesson has a text (README.md), a program with a gap, and questions whose answers you "
     "predict in answers.yaml before you run anything.\n\n"
     "mimdsim lab NAME [FOLDER]: makes FOLDER (default: NAME). --variant STUDENT: other numbers for "
-    "each name, the same ones every time.\n\n"
+    "each name, the same ones every time. --mpi: the program is an ordinary MPI program in C, not "
+    "a "
+    "kernel in one file.\n\n"
     "mimdsim lab check [FOLDER...]: runs the program in each FOLDER (default: here), and compares "
     "your predictions, what your program did, and the closed form, as whole numbers. The exit "
     "status is 1 unless all is right.\n\n"
+    "mimdsim lab draw [FOLDER]: runs the program and draws the lesson's picture into FOLDER.\n\n"
     "mimdsim lab grade FOLDER...: one line for each attempt.";
 
 /* --- the list --- */
@@ -34,7 +37,7 @@ static int list_labs(const struct common *c, struct arena *a)
         struct lab l;
         struct text t = {0};
         /* A damaged lesson is told at once, not when a student chooses it. */
-        if (!lab_read(&l, name[i], "", a, &e)) return common_fail(c, &e);
+        if (!lab_read(&l, name[i], "", false, a, &e)) return common_fail(c, &e);
         text_add(&t, "%s (%s minutes)", l.title, l.minutes);
         title[i] = arena_text(a, t.s);
         text_free(&t);
@@ -46,7 +49,7 @@ static int list_labs(const struct common *c, struct arena *a)
 /* --- a copy --- */
 
 /* The student's folder, and what to do there. */
-static int copy_lab(const struct common *c, const char *student, struct arena *a)
+static int copy_lab(const struct common *c, const char *student, bool mpi, struct arena *a)
 {
     struct err e;
     struct lab l;
@@ -57,13 +60,13 @@ static int copy_lab(const struct common *c, const char *student, struct arena *a
         err_set(&e, ERR_USAGE, "lab %s: expected at most one folder", c->arg[0]);
         return common_fail(c, &e);
     }
-    if (!lab_read(&l, c->arg[0], student, a, &e) || !lab_copy(&l, folder, &e))
+    if (!lab_read(&l, c->arg[0], student, mpi, a, &e) || !lab_copy(&l, folder, &e))
         return common_fail(c, &e);
     /* The four steps of every lesson. */
     if (!c->quiet)
-        printf("%s: %s\nRead %s/README.md, fill in %s/answers.yaml, complete %s/%s.c, then:\n"
+        printf("%s: %s\nRead %s/README.md, fill in %s/answers.yaml, complete %s/%s, then:\n"
                "    mimdsim lab check %s\n",
-               l.name, l.title, folder, folder, folder, l.name, folder);
+               l.name, l.title, folder, folder, folder, l.program, folder);
     return 0;
 }
 
@@ -158,6 +161,20 @@ static int check_all(const struct common *c, bool brief)
     return status;
 }
 
+/* The picture of one attempt, and where it is. */
+static int draw(const struct common *c, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    const char *file;
+    int status;
+    if (c->narg > 2) err_set(&e, ERR_USAGE, "lab draw: expected at most one folder");
+    if (e.kind != ERR_NONE || !lab_draw(c->narg > 1 ? c->arg[1] : ".", &file, &status, a, &e))
+        return common_fail(c, &e);
+    if (status == 0 && !c->quiet) printf("%s.png\n", file);
+    return status;
+}
+
 /* A name is written into files of the attempt: one line, no quotes. */
 static bool is_student(const char *s, struct err *e)
 {
@@ -176,14 +193,19 @@ int cmd_lab(int argc, char **argv)
     err_clear(&e);
     /* The option of this verb alone is taken before argp reads the rest. */
     const char *variant = take_value(&argc, argv, "--variant");
-    common_parse(&c, argc, argv, 0, "[NAME [FOLDER] | check [FOLDER...] | grade FOLDER...]", doc, 0,
+    const bool mpi = take_flag(&argc, argv, "--mpi");
+    common_parse(&c, argc, argv, 0,
+                 "[NAME [FOLDER] | check [FOLDER...] | draw [FOLDER] | grade FOLDER...]", doc, 0,
                  64);
     if (variant != NULL && !is_student(variant, &e)) return common_fail(&c, &e);
     if (c.narg > 0 && strcmp(c.arg[0], "check") == 0) return check_all(&c, false);
     if (c.narg > 0 && strcmp(c.arg[0], "grade") == 0) return check_all(&c, true);
     /* Everything else is the name of a lesson. */
     struct arena *a = arena_create();
-    const int status = c.narg == 0 ? list_labs(&c, a) : copy_lab(&c, variant ? variant : "", a);
+    const int status = c.narg == 0 ? list_labs(&c, a)
+                       : strcmp(c.arg[0], "draw") == 0
+                           ? draw(&c, a)
+                           : copy_lab(&c, variant ? variant : "", mpi, a);
     arena_destroy(a);
     return status;
 }

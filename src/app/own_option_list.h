@@ -52,6 +52,7 @@
       "of a database: make K of its runs (or all) again and compare every number")                 \
     X("check", "seed", "S", "which runs --again takes (default 1)")                                \
     X("lab", "variant", "STUDENT", "choose the numbers of the lesson by this name")                \
+    X("lab", "mpi", NULL, "the program of the lesson is an MPI program")                           \
     X("scenarios", "keys", NULL, "all keys of scenarios, machine files and --set")                 \
     X("query", "upgrade", NULL, "make the database one of this version")                           \
     X("query", "schema", NULL, "print every table, view and column")

@@ -8,10 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/process.h"
 #include "compile/block_filter.h"
 #include "compile/command.h"
 #include "compile/object_check.h"
-#include "compile/process.h"
 #include "compile/start_text.h"
 
 enum { FAILED = -1 }; /* *e tells */
@@ -77,11 +77,26 @@ static void add_includes(struct driver *d, struct words *w)
     }
 }
 
+/* A compiler that is not there: which one it may be. */
+static void name_compilers(struct err *e)
+{
+    char what[sizeof e->text];
+    if (e->kind != ERR_UNAVAILABLE) return;
+    text_copy(what, sizeof what, e->text);
+    err_clear(e);
+    err_set(e, ERR_UNAVAILABLE,
+            "%.300s; `mimdsim cc`, `c++` and `f90` work through gcc, g++ and gfortran, or what "
+            "MIMDSIM_CC, MIMDSIM_CXX and MIMDSIM_FC name",
+            what);
+}
+
 /* Run a program that writes its own messages; its status, or FAILED. */
 static int run(struct driver *d, const struct words *w, const struct text *in, struct text *out)
 {
     int status;
-    return process_run(w->word, in, out, &status, d->e) ? status : FAILED;
+    if (process_run(w->word, in, out, &status, d->e)) return status;
+    name_compilers(d->e);
+    return FAILED;
 }
 
 /* --- compiling --- */
@@ -341,6 +356,7 @@ static int pass_on(struct driver *d, int n, const char *const *word)
     words_add_all(&w, n, word);
     if (d->command.nsource > 0) add_includes(d, &w);
     process_replace(w.word, d->e);
+    name_compilers(d->e);
     return FAILED;
 }
 

@@ -1,4 +1,8 @@
-/* lab.c - reading a lesson and making a student's copy of it. */
+/* lab.c - reading a lesson and making a student's copy of it.
+ *
+ * Nothing of a lesson is code here: its numbers, its closed forms and what the run is asked are
+ * texts of lab.yaml, filled in by the same marks as the files that the student gets. So a new
+ * lesson is a folder, and no line of this program. */
 #include "lab/lab.h"
 
 #include <dirent.h>
@@ -23,6 +27,33 @@ static uint64_t hash(const char *name, const char *what)
     return h ^ h >> 32;
 }
 
+/* The word between two marks that begin at `s`: "@P@" is P, 1 letter long; NULL: it is none. An
+ * address with one @ in it is text, too, unless another mark follows; then its word is unknown. */
+static const char *marked(const char *s, size_t *n)
+{
+    const char *close = strchr(s + 1, '@');
+    *n = close != NULL ? (size_t)(close - s - 1) : 0;
+    return close != NULL ? s + 1 : NULL;
+}
+
+/* Words are not ended by NUL: they stand in the template. */
+static bool is_word(const char *word, size_t n, const char *wanted)
+{
+    return strlen(wanted) == n && memcmp(word, wanted, n) == 0;
+}
+
+/* What stands for a marked word; NULL: it is text as any other. The mark of the own kind of program
+ * is empty: its line stays, and the mark goes. */
+static const char *value_of(const struct lab *l, const char *word, size_t n)
+{
+    for (int i = 0; i < l->nnumber; i++)
+        if (is_word(word, n, l->number[i].name)) return l->number[i].value;
+    if (is_word(word, n, "student")) return l->student;
+    if (is_word(word, n, "program")) return l->program;
+    if (is_word(word, n, l->mpi ? "mpi" : "kernel")) return "";
+    return NULL;
+}
+
 void lab_fill(const struct lab *l, const char *template, struct text *out)
 {
     const char *s = template;
@@ -31,19 +62,21 @@ void lab_fill(const struct lab *l, const char *template, struct text *out)
         text_add_bytes(out, s, plain);
         s += plain;
         if (*s == '\0') break;
-        /* Between two marks: a number of the lab, its student, or text as it is. */
-        const char *close = strchr(s + 1, '@'), *value = NULL;
-        const size_t n = close != NULL ? (size_t)(close - s - 1) : 0;
-        for (int i = 0; i < l->nnumber && close != NULL; i++)
-            if (strlen(l->number[i].name) == n && memcmp(l->number[i].name, s + 1, n) == 0)
-                value = l->number[i].value;
-        if (n == 7 && memcmp(s + 1, "student", n) == 0) value = l->student;
+        size_t n;
+        const char *word = marked(s, &n), *value = word != NULL ? value_of(l, word, n) : NULL;
+        /* A line of the other kind of program goes as a whole. */
+        if (word != NULL && is_word(word, n, l->mpi ? "kernel" : "mpi")) {
+            s += strcspn(s, "\n");
+            s += *s == '\n';
+            continue;
+        }
         if (value != NULL) text_add(out, "%s", value);
         else text_add_bytes(out, s, 1);
         s += value != NULL ? n + 2 : 1;
     }
 }
 
+/* A text of lab.yaml with its numbers, kept as long as the lab. */
 static const char *filled(const struct lab *l, const char *template, struct arena *a)
 {
     struct text t = {0};
@@ -53,20 +86,51 @@ static const char *filled(const struct lab *l, const char *template, struct aren
     return kept;
 }
 
-/* One entry of the list, chosen by the name. */
-static bool take_number(struct lab *l, const struct node *list, const char *path, struct err *e)
+/* A number that follows from another one, before it in the file: `{of: P, 8: 3, 16: 4}`. */
+static bool follow_number(const struct lab *l, const struct node *map, const char *path,
+                          const char **value, struct err *e)
 {
-    if (l->nnumber == LAB_NUMBERS || list->kind != NODE_LIST || list->count == 0)
-        return err_set_at(e, ERR_DATA, path, list->line, "%s: expected a list of numbers",
-                          list->key);
-    const uint64_t place =
-        l->student[0] != '\0' ? hash(l->student, list->key) % (uint64_t)list->count : 0;
-    const struct node *chosen = list->child;
-    for (uint64_t i = 0; i < place; i++) chosen = chosen->next;
-    l->number[l->nnumber++] = (struct lab_number){list->key, chosen->text};
+    const char *of = document_text(map, "of"), *given = NULL;
+    for (int i = 0; i < l->nnumber; i++)
+        if (strcmp(l->number[i].name, of) == 0) given = l->number[i].value;
+    if (given == NULL)
+        return err_set_at(e, ERR_DATA, path, map->line, "%s: of '%s', which is no number before it",
+                          map->key, of);
+    /* A value that is missing would otherwise be found by one student in ten. */
+    const struct node *found = document_find(map, given);
+    if (found == NULL)
+        return err_set_at(e, ERR_DATA, path, map->line, "%s: nothing for %s = %s", map->key, of,
+                          given);
+    *value = found->text;
     return true;
 }
 
+/* One entry of the list, chosen by the name, or the one that follows from another number. */
+static bool take_number(struct lab *l, const struct node *list, const char *path, struct err *e)
+{
+    const char *value = NULL;
+    if (l->nnumber == LAB_NUMBERS)
+        return err_set_at(e, ERR_DATA, path, list->line, "more than %d numbers", LAB_NUMBERS);
+    if (list->kind == NODE_MAP) {
+        if (!follow_number(l, list, path, &value, e)) return false;
+    } else {
+        if (list->kind != NODE_LIST || list->count == 0)
+            return err_set_at(e, ERR_DATA, path, list->line, "%s: expected a list of numbers",
+                              list->key);
+        /* The name of the number is part of it, so that the lists are chosen from independently;
+         * who has no name gets the first of each. */
+        const uint64_t place =
+            l->student[0] != '\0' ? hash(l->student, list->key) % (uint64_t)list->count : 0;
+        const struct node *chosen = list->child;
+        for (uint64_t i = 0; i < place; i++) chosen = chosen->next;
+        value = chosen->text;
+    }
+    l->number[l->nnumber++] = (struct lab_number){list->key, value};
+    return true;
+}
+
+/* A question with its closed form and what the run is asked. Both are SQL, because that is exact in
+ * 64 bits, and can look at every row and column that a run has. */
 static bool take_question(struct lab *l, const struct node *q, const char *path, struct arena *a,
                           struct err *e)
 {
@@ -89,6 +153,7 @@ static bool take_question(struct lab *l, const struct node *q, const char *path,
     return true;
 }
 
+/* The order of the list must not depend on the file system. */
 static int by_name(const void *a, const void *b)
 {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -102,7 +167,8 @@ int lab_names(struct arena *a, const char ***name)
     DIR *folder = opendir(path.s);
     int n = 0;
     *name = TAKE(a, MOST, const char *);
-    /* Every folder in it with a lab.yaml; solutions have none. */
+    /* Every folder in it with a lab.yaml; solutions have none. Where there is no folder of lessons
+     * at all, there are none. */
     for (struct dirent *d; folder != NULL && n < MOST && (d = readdir(folder)) != NULL;) {
         struct text file = {0};
         text_add(&file, "%s/%s/lab.yaml", path.s, d->d_name);
@@ -116,7 +182,30 @@ int lab_names(struct arena *a, const char ***name)
     return n;
 }
 
-/* The nearest lab, for a name that is none. */
+/* The picture: with an x it is a curve, and then y is needed. Kernels and MPI programs may differ
+ * in what tells their curves apart, as parameters of the one are arguments of the other. */
+static bool take_picture(struct lab *l, const struct node *root, const char *path, struct arena *a,
+                         struct err *e)
+{
+    const struct node *p = document_find(root, "picture");
+    const struct node *set = p != NULL ? document_find(p, l->mpi ? "set-mpi" : "set") : NULL;
+    /* Where the two kinds do not differ, the lesson says it once. */
+    if (p != NULL && set == NULL) set = document_find(p, "set");
+    l->picture = (struct lab_picture){.x = document_text(p, "x"),
+                                      .y = document_text(p, "y"),
+                                      .by = document_text(p, l->mpi ? "by-mpi" : "by")};
+    if ((l->picture.x[0] == '\0') != (l->picture.y[0] == '\0'))
+        return err_set_at(e, ERR_DATA, path, p->line, "picture: expected x and y");
+    for (const struct node *n = set != NULL ? set->child : NULL; n != NULL; n = n->next) {
+        if (l->picture.nset == LAB_SETS)
+            return err_set_at(e, ERR_DATA, path, n->line, "more than %d settings", LAB_SETS);
+        l->picture.set[l->picture.nset++] = filled(l, n->text, a);
+    }
+    return true;
+}
+
+/* The nearest lab, for a name that is none: students type names, and folders are not listed for
+ * them. */
 static bool no_such_lab(const char *name, struct arena *a, struct err *e)
 {
     const char **names;
@@ -126,23 +215,33 @@ static bool no_such_lab(const char *name, struct arena *a, struct err *e)
                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-bool lab_read(struct lab *l, const char *name, const char *student, struct arena *a, struct err *e)
+bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, struct arena *a,
+              struct err *e)
 {
     struct text path = {0};
-    *l = (struct lab){.name = arena_text(a, name), .student = arena_text(a, student)};
-    if (strchr(name, '/') != NULL || name[0] == '.') return no_such_lab(name, a, e);
+    text_add(&path, "%s%s.c", name, mpi ? "-mpi" : "");
+    *l = (struct lab){.name = arena_text(a, name),
+                      .student = arena_text(a, student),
+                      .program = arena_text(a, path.s),
+                      .mpi = mpi};
+    /* A name is that of a folder in labs/, and no way to another one: answers.yaml, which comes
+     * from a student, names it, too. */
+    path.length = 0;
     text_add(&path, "%s/labs/%s", plan_data_dir(), name);
     l->folder = arena_text(a, path.s);
     text_add(&path, "/lab.yaml");
     const char *file = arena_text(a, path.s);
     text_free(&path);
-    if (access(file, R_OK) != 0) return no_such_lab(name, a, e);
+    if (strchr(name, '/') != NULL || name[0] == '.' || access(file, R_OK) != 0)
+        return no_such_lab(name, a, e);
     const struct node *root = document_read_settings(file, a, e);
     if (root == NULL) return false;
     l->title = document_text(root, "title");
     l->goal = document_text(root, "goal");
     l->minutes = document_text(root, "minutes");
-    /* Numbers first: questions are made of them. */
+    /* Numbers first: questions are made of them, and the picture's settings, too. A lesson without
+     * numbers would be the same for everybody, and one without questions has nothing to check: both
+     * are mistakes of the lesson's author. */
     const struct node *numbers = document_need(root, "numbers", file, e);
     const struct node *questions = document_need(root, "questions", file, e);
     if (numbers == NULL || questions == NULL) return false;
@@ -150,25 +249,27 @@ bool lab_read(struct lab *l, const char *name, const char *student, struct arena
         if (!take_number(l, n, file, e)) return false;
     for (const struct node *q = questions->child; q != NULL; q = q->next)
         if (!take_question(l, q, file, a, e)) return false;
-    return true;
+    return take_picture(l, root, file, a, e);
 }
 
 /* --- the copy --- */
 
-/* answers.yaml: a place for each prediction, under its question. */
+/* answers.yaml: a place for each prediction, under its question. It also tells whose numbers these
+ * are and which program it is about, so that a folder can be moved, renamed and handed in. */
 static void write_answers(const struct lab *l, struct text *out)
 {
     text_add(out,
              "# Predict first: fill in whole numbers, times in picoseconds. Then complete the\n"
              "# program, and let `mimdsim lab check` compare both with the simulation.\n"
-             "lab: %s\nstudent: \"%s\"\nanswers:\n",
-             l->name, l->student);
+             "lab: %s\nstudent: \"%s\"\nprogram: %s\nanswers:\n",
+             l->name, l->student, l->program);
     for (int i = 0; i < l->nquestion; i++)
         text_add(out, "  # %s [%s]\n  %s:\n", l->question[i].text, l->question[i].unit,
                  l->question[i].name);
 }
 
-/* One file of the lab into the folder. */
+/* One file of the lab into the folder, filled in, under the name that it has there. It must be new:
+ * a student's work is never written over. */
 static bool copy_file(const struct lab *l, const char *file, const char *folder, struct err *e)
 {
     struct text from = {0}, to = {0}, template = {0}, content = {0};
@@ -187,8 +288,8 @@ static bool copy_file(const struct lab *l, const char *file, const char *folder,
 bool lab_copy(const struct lab *l, const char *folder, struct err *e)
 {
     const char *const suffix[] = {"README.md", "scenario.yaml"};
-    struct text program = {0}, answers = {0}, path = {0};
-    text_add(&program, "%s.c", l->name);
+    struct text answers = {0}, path = {0};
+    /* The folder is made here, so that it is empty; one that is there is left as it is. */
     text_add(&path, "%s/answers.yaml", folder);
     write_answers(l, &answers);
     if (mkdir(folder, 0777) != 0) {
@@ -196,22 +297,22 @@ bool lab_copy(const struct lab *l, const char *folder, struct err *e)
         err_set(e, ERR_CREATE,
                 there ? "%s is there already; name another folder, or move it away" : "%s: %s",
                 folder, strerror(errno));
-        text_free(&program);
         text_free(&answers);
         text_free(&path);
         return false;
     }
-    bool fine = copy_file(l, program.s, folder, e) && new_file_write(path.s, &answers, e);
+    /* The program first: it is what may be missing of a lesson that is being written. */
+    bool fine = copy_file(l, l->program, folder, e) && new_file_write(path.s, &answers, e);
     for (int i = 0; fine && i < 2; i++) fine = copy_file(l, suffix[i], folder, e);
-    /* All or nothing: a student with half of a lesson would not know what is missing. */
-    const char *const made[] = {program.s, "answers.yaml", suffix[0], suffix[1]};
+    /* All or nothing: a student with half of a lesson would not know what is missing, and a second
+     * try would find the folder there already. */
+    const char *const made[] = {l->program, "answers.yaml", suffix[0], suffix[1]};
     for (int i = 0; !fine && i < 4; i++) {
         path.length = 0;
         text_add(&path, "%s/%s", folder, made[i]);
         unlink(path.s);
     }
     if (!fine) rmdir(folder);
-    text_free(&program);
     text_free(&answers);
     text_free(&path);
     return fine;

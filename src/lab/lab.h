@@ -1,9 +1,14 @@
 /* lab.h - lessons: a program to complete, numbers to predict, and an exact check of both.
  *
- * A lab is a folder labs/NAME with lab.yaml (title, goal, numbers, questions), README.md, a program
- * NAME.c with a gap, and scenario.yaml. `@NUMBER@` in any of them stands for a number that the
- * student's name chooses from a list, so that neighbours have different ones. An attempt is a copy
- * of that folder with answers.yaml, where the student writes predictions. */
+ * A lab is a folder labs/NAME with lab.yaml (title, goal, numbers, questions), README.md, the
+ * program with a gap, NAME.c as a kernel and NAME-mpi.c as an ordinary MPI program, and
+ * scenario.yaml.
+ * `@NUMBER@` in any of them stands for a number that the student's name chooses from a list, so
+ * that neighbours have different ones; a number may follow from another (`k: {of: P, 8: 3, 16:
+ * 4}`).
+ * `@program@` is the file of the program, and lines that begin with `@kernel@` or `@mpi@` are for
+ * attempts of that kind alone. An attempt is a copy of that folder with answers.yaml, where the
+ * student writes predictions. */
 #ifndef LAB_LAB_H
 #define LAB_LAB_H
 
@@ -14,7 +19,7 @@
 #include "base/err.h"
 #include "base/text.h"
 
-enum { LAB_NUMBERS = 16, LAB_QUESTIONS = 16 };
+enum { LAB_NUMBERS = 16, LAB_QUESTIONS = 16, LAB_SETS = 4 };
 
 /* What the student's name chose. */
 struct lab_number {
@@ -28,11 +33,22 @@ struct lab_question {
     const char *simulated; /* an SQL query of one value: what the student's run says; "": nothing */
 };
 
+/* What `mimdsim lab draw` draws: with x a curve of y over x, for each value of `by`, of the
+ * scenario's runs with the settings of `set`; else the timeline of the first run. */
+struct lab_picture {
+    const char *x, *y, *by;
+    int nset;
+    const char *set[LAB_SETS]; /* "ranks=2,4,8" */
+};
+
 struct lab {
     const char *name, *folder, *title, *goal, *minutes, *student;
+    const char *program; /* the file that the student completes */
+    bool mpi;            /* it is the MPI program, not the kernel */
     int nnumber, nquestion;
     struct lab_number number[LAB_NUMBERS];
     struct lab_question question[LAB_QUESTIONS];
+    struct lab_picture picture;
 };
 
 /* One question of an attempt that was checked. */
@@ -57,12 +73,14 @@ struct lab_result {
  * installed). */
 int lab_names(struct arena *a, const char ***name);
 
-/* lab_read: the lab called `name`, with the numbers of `student` ("": the first of each list).
- * Texts lie in `a`. Returns false with ERR_NO_INPUT (no such lab, with the nearest name), ERR_DATA
- * (lab.yaml is damaged). */
-bool lab_read(struct lab *l, const char *name, const char *student, struct arena *a, struct err *e);
+/* lab_read: the lab called `name`, with the numbers of `student` ("": the first of each list), for
+ * a kernel or for an MPI program. Texts lie in `a`. Returns false with ERR_NO_INPUT (no such lab,
+ * with the nearest name), ERR_DATA (lab.yaml is damaged). */
+bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, struct arena *a,
+              struct err *e);
 
-/* lab_fill: `template` with the lab's numbers in the place of every @NUMBER@, appended to *out. */
+/* lab_fill: `template` with the lab's numbers in the place of every @NUMBER@, and without the lines
+ * of the other kind of program, appended to *out. */
 void lab_fill(const struct lab *l, const char *template, struct text *out);
 
 /* lab_copy: the student's folder `folder`, which must not exist, with every file filled in and an
@@ -73,5 +91,18 @@ bool lab_copy(const struct lab *l, const char *folder, struct err *e);
  * Texts lie in `a`. Returns false with ERR_NO_INPUT or ERR_DATA when answers.yaml cannot be used; a
  * program that fails is a result, not an error. */
 bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct err *e);
+
+/* lab_attempt: the lab of the attempt in `folder`, with its student's numbers, and in *answers what
+ * the student wrote in answers.yaml. Texts lie in `a`. Returns false with ERR_NO_INPUT or ERR_DATA.
+ */
+struct node;
+bool lab_attempt(struct lab *l, const char *folder, const struct node **answers, struct arena *a,
+                 struct err *e);
+
+/* lab_draw: runs the attempt in `folder` and draws the lab's picture into the folder, as *file with
+ * the endings .png and .svg. *status becomes the exit status of what was started for it: not 0 when
+ * the program failed or there is no gnuplot, which has then been told. Returns false as
+ * lab_attempt, or when nothing could be started. */
+bool lab_draw(const char *folder, const char **file, int *status, struct arena *a, struct err *e);
 
 #endif

@@ -1,11 +1,15 @@
 /* lab_check.c - a student's attempt: the program is run, and three numbers are compared for each
- * question: the prediction, what the run says, and the closed form. */
-#include <limits.h>
+ * question: the prediction, what the run says, and the closed form.
+ *
+ * All three are whole numbers (picoseconds, messages, bytes, rounds), so that right is equal and no
+ * tolerance has to be agreed on. The run is made in a process of its own, by the command that the
+ * student would type: a program that crashes takes no teacher's table with it. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "compile/process.h"
+#include "base/process.h"
 #include "io/document.h"
 #include "lab/lab.h"
 #include "store/store.h"
@@ -21,14 +25,22 @@ static bool take_value(void *context, int ncolumn, const char *const *name,
     return false;
 }
 
+/* A whole number that fits into 64 bits: strtoll gives the nearest one for what does not, which
+ * would then be compared as if the student had written it. */
+static bool read_whole(const char *text, int64_t *x)
+{
+    char *end;
+    errno = 0;
+    *x = strtoll(text, &end, 10);
+    return end != text && *end == '\0' && errno == 0;
+}
+
 /* An SQL query of one whole number; false with ERR_DATA where it gives none. */
 static bool whole_number(struct store *s, const char *sql, int64_t *x, struct err *e)
 {
     struct text t = {0};
     bool ok = store_select(s, sql, 0, NULL, take_value, &t, e);
-    char *end = NULL;
-    if (ok) *x = t.length > 0 ? strtoll(t.s, &end, 10) : 0;
-    if (ok && (end == NULL || *end != '\0'))
+    if (ok && !read_whole(t.length > 0 ? t.s : "", x))
         ok = err_set(e, ERR_DATA, "'%s' gives '%s', not a whole number", sql,
                      t.length > 0 ? t.s : "");
     text_free(&t);
@@ -50,11 +62,12 @@ static bool evaluate_theory(const struct lab *l, struct lab_result *r, struct er
     return ok;
 }
 
-/* The student's predictions. What is left empty is not answered; what is no number is a mistake
- * that the message shows. */
+/* The student's predictions, of which each belongs to a question by its name: their order is free.
+ * What is left empty is not answered; what is no number is a mistake that the message shows. */
 static bool read_answers(struct lab_result *r, const struct lab *l, const struct node *root,
                          const char *path, struct err *e)
 {
+    /* A file without the word "answers" was damaged, and would else count as one without any. */
     const struct node *answers = document_need(root, "answers", path, e);
     if (answers == NULL) return false;
     for (const struct node *n = answers->child; n != NULL; n = n->next) {
@@ -63,13 +76,12 @@ static bool read_answers(struct lab_result *r, const struct lab *l, const struct
         if (i == l->nquestion)
             return err_set_at(e, ERR_DATA, path, n->line, "'%s' is no question of this lab",
                               n->key);
+        /* "bytes:" with nothing behind it: a question for later. */
         if (n->text == NULL || n->text[0] == '\0') continue;
-        char *end;
-        r->answer[i].predicted = strtoll(n->text, &end, 10);
-        if (*end != '\0')
+        if (!read_whole(n->text, &r->answer[i].predicted))
             return err_set_at(e, ERR_DATA, path, n->line,
-                              "%s: '%.40s' is not a whole number [%s]", n->key, n->text,
-                              l->question[i].unit);
+                              "%s: '%.40s' is not a whole number of at most 18 digits [%s]", n->key,
+                              n->text, l->question[i].unit);
         r->answer[i].given = true;
     }
     return true;
@@ -81,7 +93,7 @@ static bool run_scenario(const char *folder, const char *database, int *status, 
 {
     struct text scenario = {0}, table = {0};
     text_add(&scenario, "%s/scenario.yaml", folder);
-    const char *const word[] = {"/proc/self/exe", "run",    scenario.s, "-o",
+    const char *const word[] = {"/proc/self/exe", "run",     scenario.s, "-o",
                                 database,         "--quiet", "--force",  NULL};
     const bool ok = process_run(word, NULL, &table, status, e);
     text_free(&scenario);
@@ -95,6 +107,7 @@ static const char *outcome(struct store *s, struct arena *a)
     struct err e;
     struct text t = {0};
     err_clear(&e);
+    /* Of several runs one that failed is told; where all are well, the word is "ok". */
     static const char sql[] = "SELECT status || CASE WHEN text <> '' THEN ': ' || text ELSE '' END "
                               "FROM run ORDER BY status = 'ok', id LIMIT 1";
     const bool ok = store_select(s, sql, 0, NULL, take_value, &t, &e);
@@ -109,11 +122,14 @@ static bool look(const struct lab *l, struct lab_result *r, const char *database
 {
     struct err missing;
     err_clear(&missing);
+    /* A program that does not compile leaves no database; its messages have been shown. */
     struct store *s = store_open(database, STORE_READ, &missing);
     r->program = "the program could not be run";
     if (s == NULL) return true;
     r->program = outcome(s, a);
     bool ok = true;
+    /* Of a run that went wrong nothing is asked: its numbers would be taken for answers. A query
+     * that gives no whole number is a mistake of the lesson, and is told as such. */
     for (int i = 0; ok && i < l->nquestion && strcmp(r->program, "ok") == 0; i++) {
         if (!r->answer[i].asked) continue;
         ok = whole_number(s, l->question[i].simulated, &r->answer[i].simulated, e);
@@ -123,36 +139,71 @@ static bool look(const struct lab *l, struct lab_result *r, const char *database
     return ok;
 }
 
+/* How far a prediction is off, roughly, so that it may be found without being read off: the unit
+ * that was mistaken, or the percentage. */
+static const char *difference(const struct lab_answer *x, struct arena *a)
+{
+    struct text t = {0};
+    const char *side = x->predicted < x->theory ? "small" : "large";
+    /* Of the sign and the order of magnitude alone: a difference would give the answer away before
+     * the program is complete. */
+    const double ratio = x->theory != 0 ? (double)x->predicted / (double)x->theory : 0;
+    bool unit = false;
+    /* Nanoseconds for picoseconds, kilobytes for bytes: the commonest mistake has its own words. */
+    for (double power = 1e3; power <= 1e12; power *= 1e3)
+        unit = unit || ratio == power || ratio * power == 1;
+    text_add(&t, "wrong");
+    if (unit) text_add(&t, ": too %s by a power of 1000; which unit?", side);
+    else if (ratio > 0 && ratio < 1e3)
+        text_add(&t, ": %.2g %% too %s", 100 * (ratio > 1 ? ratio - 1 : 1 - ratio), side);
+    const char *kept = arena_text(a, t.s);
+    text_free(&t);
+    return kept;
+}
+
 /* The verdict of one question. A prediction is compared with the theory; where the program does
  * something else than the theory says, that is told, too. */
-static const char *verdict_of(const struct lab_answer *x)
+static const char *verdict_of(const struct lab_answer *x, struct arena *a)
 {
     if (x->ran && x->simulated != x->theory)
         return x->given && x->predicted == x->theory
                    ? "prediction right; the program does something else"
                    : "the program does something else than the theory";
     if (!x->given) return "no prediction yet";
-    if (x->predicted != x->theory) return "wrong";
+    if (x->predicted != x->theory) return difference(x, a);
     return x->ran || !x->asked ? "right" : "right, but the program did not end";
+}
+
+bool lab_attempt(struct lab *l, const char *folder, const struct node **answers, struct arena *a,
+                 struct err *e)
+{
+    struct text path = {0};
+    text_add(&path, "%s/answers.yaml", folder);
+    const struct node *root = document_read_settings(path.s, a, e);
+    text_free(&path);
+    if (root == NULL) return false;
+    *answers = root;
+    return lab_read(l, document_text(root, "lab"), document_text(root, "student"),
+                    strstr(document_text(root, "program"), "-mpi.c") != NULL, a, e);
 }
 
 bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct err *e)
 {
+    struct lab l;
     struct text path = {0};
+    const struct node *root;
     *r = (struct lab_result){.folder = arena_text(a, folder), .program = ""};
+    if (!lab_attempt(&l, folder, &root, a, e)) return false;
     text_add(&path, "%s/answers.yaml", folder);
-    const char *file = arena_text(a, path.s);
+    const bool read = read_answers(r, &l, root, path.s, e);
     path.length = 0;
     text_add(&path, "%s/lab.db", folder);
     const char *database = arena_text(a, path.s);
     text_free(&path);
-    const struct node *root = document_read_settings(file, a, e);
-    if (root == NULL) return false;
-    struct lab l;
-    r->lab = document_text(root, "lab");
-    r->student = document_text(root, "student");
-    if (!lab_read(&l, r->lab, r->student, a, e) || !read_answers(r, &l, root, file, e))
-        return false;
+    if (!read) return false;
+    /* All questions stand in the result, answered or not. */
+    r->lab = l.name;
+    r->student = l.student;
     r->nanswer = l.nquestion;
     for (int i = 0; i < l.nquestion; i++) {
         r->answer[i].name = l.question[i].name;
@@ -165,8 +216,9 @@ bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct
     if (!evaluate_theory(&l, r, e) || !run_scenario(folder, database, &status, e) ||
         !look(&l, r, database, a, e))
         return false;
+    /* Right is what the program and the student both have as the closed form has it. */
     for (int i = 0; i < r->nanswer; i++) {
-        r->answer[i].verdict = verdict_of(&r->answer[i]);
+        r->answer[i].verdict = verdict_of(&r->answer[i], a);
         r->right += strcmp(r->answer[i].verdict, "right") == 0;
     }
     return true;

@@ -1,5 +1,5 @@
 /* process.c - programs as children, one pipe each way. */
-#include "compile/process.h"
+#include "base/process.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,15 +12,11 @@
 
 extern char **environ;
 
-/* A compiler that is missing is the commonest case and says how to name another. */
+/* A program that is missing is the commonest case; who knows what it is for adds how to help. */
 static bool cannot_start(const char *program, int error, struct err *e)
 {
     if (error == ENOENT)
-        return err_set(e, ERR_UNAVAILABLE,
-                       "'%s' is not installed, or not in PATH; `mimdsim cc`, `c++` and `f90` work "
-                       "through gcc, g++ and "
-                       "gfortran, or what MIMDSIM_CC, MIMDSIM_CXX and MIMDSIM_FC name",
-                       program);
+        return err_set(e, ERR_UNAVAILABLE, "'%s' is not installed, or not in PATH", program);
     return err_set(e, ERR_INTERNAL, "'%s' cannot be started: %s", program, strerror(error));
 }
 
@@ -50,6 +46,7 @@ static int spawn(const char *const *word, const struct pipes *p, pid_t *child)
         posix_spawnp(child, word[0], &actions, &attributes, (char *const *)word, environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
+    /* An error number, not errno: posix_spawnp returns it. */
     return error;
 }
 
@@ -74,6 +71,7 @@ static void exchange(struct pipes *p, const struct text *in, struct text *out)
             if ((n < 0 && errno != EINTR && errno != EAGAIN) || written == in->length)
                 close_one(&p->to[1]);
         }
+        /* The end of the child's output is also what ends this loop. */
         if (ready[1].revents != 0) {
             char piece[65536];
             const ssize_t n = read(p->from[0], piece, sizeof piece);

@@ -1,6 +1,6 @@
 /* process.h - other programs run, with texts to and from them. */
-#ifndef COMPILE_PROCESS_H
-#define COMPILE_PROCESS_H
+#ifndef BASE_PROCESS_H
+#define BASE_PROCESS_H
 
 #include <stdbool.h>
 

@@ -1,0 +1,14 @@
+#!/bin/sh
+# solve.sh - for teachers: put the solution into the folder of an attempt: solve.sh FOLDER
+#
+# NAME.gap holds the lines that stand in the place of the comment "GAP: ..." of the program NAME.c, or of all lines from
+# it to "End of the gap." where there is such a line.
+set -eu
+here=$(dirname "$0")
+program=$(sed -n 's/^program: //p' "$1/answers.yaml")
+awk -v gap="$here/${program%.c}.gap" '
+    NR == FNR { if (/End of the gap/) to_end = 1; next }
+    /\/\* GAP:/ { while ((getline line <gap) > 0) print line; skip = 1 }
+    !skip { print }
+    skip && (to_end ? /End of the gap/ : /\*\//) { skip = 0 }' "$1/$program" "$1/$program" >"$1/solved.c"
+mv "$1/solved.c" "$1/$program"

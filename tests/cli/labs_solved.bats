@@ -1,0 +1,46 @@
+#!/usr/bin/env bats
+# labs_solved.bats - every lesson is right when it is solved, as a kernel and as an MPI program, whatever the name.
+
+load helper
+load programs.bash
+load labs.bash
+
+setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
+
+# right FOLDER...: every answer is, and every program ends well.
+right() {
+    works mimdsim lab check "$@"
+    [ "$(grep -c '^program: ok$' <<<"$output")" -eq $# ]
+}
+
+@test "a solution answers every question, for three names" {
+    for lab in $labs; do
+        for student in '' 'Carla de la Cruz' bob; do
+            works mimdsim lab "$lab" "$lab-$student" ${student:+--variant "$student"}
+            solve "$lab-$student" "$lab"
+        done
+        right "$lab-" "$lab-bob" "$lab-Carla de la Cruz"
+    done
+    # the names have different numbers, so that these are three tests
+    ! diff -q ring-bob/answers.yaml ring-/answers.yaml
+}
+
+@test "a solution by MPI answers them as well" {
+    for lab in $labs; do
+        works mimdsim lab "$lab" "$lab" --variant "ann of $lab"
+        works mimdsim lab "$lab" "mpi-$lab" --variant "ann of $lab" --mpi
+        ! grep -rE '@[A-Za-z]+@' "mpi-$lab" "$lab"
+        solve "$lab" "$lab"
+        solve_mpi "mpi-$lab" "$lab"
+        right "mpi-$lab"
+    done
+}
+
+@test "MPI programs of the lessons compile with the mpicc of this computer" {
+    command -v mpicc >/dev/null || skip "no mpicc"
+    for lab in $labs; do
+        works mimdsim lab "$lab" "$lab" --mpi
+        solve_program "$lab"
+        works mpicc -Wall -Wextra -Werror -o "$lab/real" "$lab/$lab-mpi.c" -lm
+    done
+}
