@@ -13,6 +13,7 @@ const char *machine_idle_with_own_nodes(const struct run_spec *r)
                : NULL;
 }
 
+/* A crossbar and a bus have ports of nodes alone. */
 const char *machine_idle_without_links(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_NO_LINKS)
@@ -33,6 +34,7 @@ const char *machine_idle_unless_dragonfly(const struct run_spec *r)
     return chooses ? NULL : "only dragonflies and fat trees choose their routing";
 }
 
+/* The Origin, whose routers have ports to spare. */
 const char *machine_idle_unless_hypercube(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_CUBE)
@@ -40,11 +42,44 @@ const char *machine_idle_unless_hypercube(const struct run_spec *r)
                : "only a hypercube has Xpress links";
 }
 
+/* HyperX, folded Clos and listed graphs count parallel cables; elsewhere two routers have one. */
 const char *machine_idle_unless_bundles(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_BUNDLES)
                ? NULL
                : "this topology has no bundles of parallel cables";
+}
+
+/* A fat tree of one arity has as many switches above each as below. */
+const char *machine_idle_unless_levels(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_LEVELS)
+               ? NULL
+               : "only a folded Clos network says how many switches are above each";
+}
+
+/* The interval has a default, which must not look as if it acted. */
+const char *machine_idle_unless_express(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_EXPRESS)
+               ? NULL
+               : "only express cubes have express links";
+}
+
+/* A plain torus comes in where it left. */
+const char *machine_idle_unless_twisted(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_TWISTED)
+               ? NULL
+               : "only a twisted torus shifts its wrap links";
+}
+
+/* Placements and noise have seeds of their own. */
+const char *machine_idle_unless_seeded(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_SEEDED)
+               ? NULL
+               : "only a random network is drawn";
 }
 
 const char *machine_idle_unless_graph(const struct run_spec *r)

@@ -50,8 +50,11 @@ static const struct field fields[] = {
      .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
      .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; "
             "fat-tree: [arity, levels]; dragonfly: [terminals per router, routers per group, "
-            "global links per router, groups]; hyperx: routers in each dimension; others: "
-            "[routers]"},
+            "global links per router, groups]; hyperx: routers in each dimension; slim-fly: [q]; "
+            "dragonfly-plus: [nodes per leaf, leaves per group, spines per group, global links per "
+            "spine, groups]; folded-clos: [nodes per leaf, leaves below each switch of level 2, "
+            "...]; express-mesh, express-torus, twisted-torus: as torus; random-regular: [routers, "
+            "degree]; others: [routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH,
      AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
@@ -75,10 +78,27 @@ static const struct field fields[] = {
      .idle = machine_idle_unless_hypercube,
      .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 "
             "dimensions on one to the opposite router"},
+    /* What single families need beside dims: lists have one number for each dimension, level or
+     * link, and are empty where the family has no use for them. */
     {.key = "topology.bundle", .kind = FIELD_INT_LIST, AT(topology.bundle),
      COUNT(topology.nbundle),
      .min = 1, .max = 4096, .fallback = "[]", .idle = machine_idle_unless_bundles,
-     .doc = "hyperx: parallel cables between two routers, for each dimension; default: one"},
+     .doc = "parallel cables between two routers (hyperx: for each dimension; folded-clos: from "
+            "each level upwards; graph: for each of topology.links); default: one"},
+    {.key = "topology.up", .kind = FIELD_INT_LIST, AT(topology.up), COUNT(topology.nup),
+     .min = 1, .max = 1 << 20, .fallback = "[]", .idle = machine_idle_unless_levels,
+     .doc = "folded-clos: how many switches of the next level each switch is joined to, for each "
+            "level but the last"},
+    {.key = "topology.express", .kind = FIELD_INT, AT(topology.express), .min = 2, .max = 1 << 20,
+     .fallback = "4", .idle = machine_idle_unless_express,
+     .doc = "express-mesh, express-torus: every how many routers of a line express links begin "
+            "and end"},
+    {.key = "topology.twist", .kind = FIELD_INT_LIST, AT(topology.twist), COUNT(topology.ntwist),
+     .min = 0, .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_twisted,
+     .doc = "twisted-torus: how many places the wrap links of dimension 1, 2, ... are shifted in "
+            "dimension 0"},
+    {.key = "topology.seed", .kind = FIELD_SEED, AT(topology.seed), .fallback = "1",
+     .idle = machine_idle_unless_seeded, .doc = "random-regular: draws another graph"},
     /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink),
      .min = 0,
@@ -91,6 +111,11 @@ static const struct field fields[] = {
      .min = 1, .max = 1000000, .fallback = "[]", .idle = machine_idle_unless_graph,
      .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there "
             "and back of each"},
+    /* Weights choose the route; they say nothing of rates or latencies. */
+    {.key = "topology.link_weight", .kind = FIELD_INT_LIST,
+     AT(topology.link_weight), COUNT(topology.nlink_weight),
+     .min = 1, .max = 1000000, .fallback = "[]", .idle = machine_idle_unless_graph,
+     .doc = "graph: what each link counts in the choice of the shortest route; default: 1"},
 
     /* What computing costs: counts by class times these (machine/node_cost.c). Rates are those
      * measured with small dense code, far below a processor's peak. */

@@ -43,11 +43,20 @@ struct topology_spec {
     enum dragonfly_routing routing;
     bool xpress;                    /* Origin: further links on the routers' spare ports */
     int nbundle;                    /* entries of bundle, 0: one cable everywhere */
-    int *bundle; /* hyperx: (nbundle) cables between two routers, by dimension; borrowed */
+    int *bundle;    /* (nbundle) parallel cables, borrowed. hyperx: by dimension; folded-clos: from
+                       each level upwards; graph: of each link */
+    int nup;
+    int *up;        /* folded-clos: (nup) switches above each switch, level by level; borrowed */
+    int ntwist;
+    int *twist;     /* twisted-torus: (ntwist) shift of the wrap links of dimension 1, 2, ... */
+    int express;    /* express-mesh, express-torus: length of an express link in routers */
+    uint64_t seed;  /* random-regular */
     int nlink;                      /* graph: number of undirected links, 0 otherwise */
     int (*link)[2]; /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
     int nlink_percent;              /* graph: 0, nlink or 2 nlink */
     int *link_percent; /* graph: rate of each link, or there and back of each, in % of the link's */
+    int nlink_weight;  /* graph: 0 or nlink */
+    int *link_weight;  /* graph: what a route over each link counts, borrowed */
 };
 
 /* What computing costs on one processor. A rate holds for small dense double-precision code. */

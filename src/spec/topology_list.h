@@ -31,8 +31,28 @@
       TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                       \
     /* all routers that differ in one coordinate are joined (flattened butterfly)        */        \
     X(TOPOLOGY_HYPERX, "hyperx", hyperx, 0, product(t->dims, t->ndim), TOPOLOGY_BUNDLES)           \
+    /* McKay-Miller-Siran graphs of diameter 2; dims: q, a prime power */                          \
+    X(TOPOLOGY_SLIM_FLY, "slim-fly", slim_fly, 1,                                                  \
+      size_count(2, size_count(t->dims[0], t->dims[0])), 0)                                        \
+    /* groups of leaves and spines; dims: nodes a leaf, leaves a group, spines a group, global     \
+     * links a spine, groups */                                                                    \
+    X(TOPOLOGY_DRAGONFLY_PLUS, "dragonfly-plus", dragonfly_plus, 5,                                \
+      size_count(size_count(t->dims[0], t->dims[1]), t->dims[4]), TOPOLOGY_OWN_NODES)              \
+    /* any radix and oversubscription; dims: nodes a leaf, switches below one of level 2, ... */   \
+    X(TOPOLOGY_FOLDED_CLOS, "folded-clos", folded_clos, 0, product(t->dims, t->ndim),              \
+      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES | TOPOLOGY_BUNDLES | TOPOLOGY_LEVELS)                  \
+    /* meshes and tori with further links between every i-th router */                             \
+    X(TOPOLOGY_EXPRESS_MESH, "express-mesh", express_mesh, 0, product(t->dims, t->ndim),           \
+      TOPOLOGY_GRID | TOPOLOGY_EXPRESS)                                                            \
+    X(TOPOLOGY_EXPRESS_TORUS, "express-torus", express_torus, 0, product(t->dims, t->ndim),        \
+      TOPOLOGY_GRID | TOPOLOGY_EXPRESS)                                                            \
+    /* tori whose wrap links are shifted in dimension 0 */                                         \
+    X(TOPOLOGY_TWISTED_TORUS, "twisted-torus", twisted_torus, 0, product(t->dims, t->ndim),        \
+      TOPOLOGY_GRID | TOPOLOGY_TWISTED)                                                            \
+    /* cables by chance; dims: routers, cables a router */                                         \
+    X(TOPOLOGY_RANDOM_REGULAR, "random-regular", random_regular, 2, t->dims[0], TOPOLOGY_SEEDED)   \
     /* routers and links given in the file */                                                      \
-    X(TOPOLOGY_GRAPH, "graph", graph, 1, t->dims[0], TOPOLOGY_LISTED)
+    X(TOPOLOGY_GRAPH, "graph", graph, 1, t->dims[0], TOPOLOGY_LISTED | TOPOLOGY_BUNDLES)
 
 /* What settings can act on a family. */
 enum topology_trait {
@@ -44,7 +64,11 @@ enum topology_trait {
     TOPOLOGY_OWN_NODES = 32, /* dims say how many nodes a router has */
     TOPOLOGY_CHOOSES = 64,  /* several routes: topology.routing */
     TOPOLOGY_LISTED = 128,  /* links come from the file: topology.links */
-    TOPOLOGY_BUNDLES = 256  /* several cables between two routers: topology.bundle */
+    TOPOLOGY_BUNDLES = 256, /* several cables between two routers: topology.bundle */
+    TOPOLOGY_LEVELS = 512,  /* levels of any number of switches: topology.up */
+    TOPOLOGY_EXPRESS = 1024, /* further links of one length: topology.express */
+    TOPOLOGY_TWISTED = 2048, /* shifted wrap links: topology.twist */
+    TOPOLOGY_SEEDED = 4096  /* drawn by chance: topology.seed */
 };
 
 #endif
