@@ -46,6 +46,11 @@ struct store *arguments_store(const struct common *c, const char *path, struct e
     return with_remark(c, store_open(path, STORE_WRITE, e));
 }
 
+struct store *arguments_store_whole(const struct common *c, const char *path, struct err *e)
+{
+    return with_remark(c, store_open(path, STORE_WHOLE, e));
+}
+
 struct store *arguments_database(const struct common *c, const char *otherwise, struct err *e)
 {
     return with_remark(c, arguments_look(c, otherwise, e));

@@ -19,6 +19,9 @@ struct store *arguments_look(const struct common *c, const char *otherwise, stru
  * upgraded. */
 struct store *arguments_store(const struct common *c, const char *path, struct err *e);
 
+/* arguments_store_whole: the same, but a new database is made by store_publish alone. */
+struct store *arguments_store_whole(const struct common *c, const char *path, struct err *e);
+
 /* arguments_run_number: whether `text` is the number of a run; where not, ERR_USAGE. */
 bool arguments_run_number(const char *text, struct err *e);
 

@@ -75,6 +75,7 @@ struct keep {
     int threads;           /* of each run, as in run_order */
     bool quiet, keep_all;
     bool spread;           /* each run is shared by the processes of a job */
+    bool whole;            /* the only run: a new database is there when all of it is */
 };
 
 /* How many more runs ended for the reason that was told last. */
@@ -127,7 +128,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
     const bool stored = store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
-    if (stored) atomic_fetch_add(&k->interrupt.stored, 1);
+    if (stored && !k->whole) atomic_fetch_add(&k->interrupt.stored, 1);
     return stored;
 }
 
@@ -258,6 +259,14 @@ static bool call_stored(struct store *s, const struct run_spec *run, const bool 
     return false;
 }
 
+/* Whether one run is all that there is to store: then nothing is lost by storing it at the end, and
+ * a new database costs one flush. */
+static bool is_single(const struct plan *p, const struct asked *asked, const struct job *job,
+                      const struct keep *k)
+{
+    return p->nrun == 1 && !job->on && !k->spread && asked->uncertainty.n == 0 && p->search == NULL;
+}
+
 /* Settle levels, leave out what is stored, run the rest, print all. */
 static bool answer(const struct common *c, const struct plan *p, const struct asked *asked,
                    struct job *job, struct keep *k, struct err *e)
@@ -266,7 +275,9 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     if (!c->quiet) say_unused(p);
     /* A robot that cannot be read is told before a database is made. */
     if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
-    k->store = arguments_store(c, c->database, e);
+    k->whole = is_single(p, asked, job, k);
+    k->store = k->whole ? arguments_store_whole(c, c->database, e)
+                        : arguments_store(c, c->database, e);
     if (!k->store) return false;
     struct run_spec *run = orders_usual(p, k, &settled);
     if (!levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e)) return false;
@@ -280,13 +291,14 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     else if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
     else if (ok)
         ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    /* What is known of the errors, before the rows are shown. */
+    ok = ok && known_error_note(k->store, k->run, p->nrun, e) && store_publish(k->store, e);
+    if (ok && k->whole) atomic_fetch_add(&k->interrupt.stored, k->done);
     interrupt_end(&k->interrupt);
     free(skip);
     say_rest(k);
-    /* What is known of the errors, before the rows are shown. */
     const struct uncertainty_options *u = &asked->uncertainty;
-    ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
-         (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
+    ok = ok && (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
     const bool search =
         settled.search != NULL && asked->part.shard.of == 0 && asked->part.point == NULL;
     ok = ok && (!search || search_run(&settled, k->store, e));

@@ -1,17 +1,23 @@
 /* interrupt.c - see interrupt.h.
  *
  * A thread may print, a signal handler may not; and a handler would need a global variable. What
- * was committed is whole whenever the process ends (store.c). */
+ * was committed is whole whenever the process ends (store.c). The thread is ended by a signal of
+ * its own: to cancel it would load the library that unwinds stacks, which takes as long as a small
+ * run. */
 #include "app/interrupt.h"
 
 #include <stdio.h>
 
-/* The signals of a terminal and of kill. */
-static void fill(sigset_t *set)
+/* What interrupt_end sends to the thread alone. */
+enum { ENOUGH = SIGUSR2 };
+
+/* The signals of a terminal and of kill; `enough`: and the one above. */
+static void fill(sigset_t *set, bool enough)
 {
     sigemptyset(set);
     sigaddset(set, SIGINT);
     sigaddset(set, SIGTERM);
+    if (enough) sigaddset(set, ENOUGH);
 }
 
 /* Waits, says, and lets the signal do what it does by itself: shells look at how a process ended.
@@ -21,8 +27,9 @@ static void *wait_for_signal(void *context)
     struct interrupt *x = context;
     sigset_t set;
     int number = 0;
-    fill(&set);
-    if (sigwait(&set, &number) != 0) return NULL;
+    fill(&set, true);
+    /* A signal of the user that waits, too, has a lower number and is the first one. */
+    if (sigwait(&set, &number) != 0 || number == ENOUGH) return NULL;
     const int stored = atomic_load(&x->stored);
     /* as campaigns of other verbs say it (run/interrupt.c), with the counts that this one knows */
     fprintf(stderr,
@@ -30,6 +37,7 @@ static void *wait_for_signal(void *context)
             "(%d of %d runs were made, into %s)\n",
             stored, x->todo, x->database);
     signal(number, SIG_DFL);
+    fill(&set, false);
     pthread_sigmask(SIG_UNBLOCK, &set, NULL);
     raise(number);
     return NULL;
@@ -42,17 +50,19 @@ void interrupt_begin(struct interrupt *x, const char *database, int todo)
     sigset_t set;
     *x = (struct interrupt){.database = database, .todo = todo};
     if (todo == 0) return;
-    fill(&set);
+    fill(&set, true);
     if (pthread_sigmask(SIG_BLOCK, &set, &x->before) != 0) return;
     x->on = pthread_create(&x->thread, NULL, wait_for_signal, x) == 0;
-    if (!x->on) pthread_sigmask(SIG_SETMASK, &x->before, NULL);
+    /* The thread has begun with all three blocked; here the last one acts as before. */
+    set = x->before;
+    if (x->on) sigaddset(&set, SIGINT), sigaddset(&set, SIGTERM);
+    pthread_sigmask(SIG_SETMASK, &set, NULL);
 }
 
 void interrupt_end(struct interrupt *x)
 {
     if (!x->on) return;
-    /* sigwait is where a thread can be cancelled */
-    pthread_cancel(x->thread);
+    pthread_kill(x->thread, ENOUGH);
     pthread_join(x->thread, NULL);
     pthread_sigmask(SIG_SETMASK, &x->before, NULL);
     x->on = false;

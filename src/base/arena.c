@@ -1,10 +1,12 @@
 /* arena.c - a bump allocator over mapped blocks.
  *
- * Blocks come from mmap, so a large array costs only the pages that are touched, and fresh pages
- * are zero already: `dirty` remembers how far a block was ever used, and only below it must a new
- * take be cleared by hand. Blocks double in size, so the number of system calls is logarithmic in
- * what a run needs. After a release the next block is kept for the next take: a loop around a mark
- * near a block's end does not map and unmap each time round.
+ * The first block is small and of the heap, which keeps its pages from one arena to the next: most
+ * arenas need no more, and to map and fault in pages for each takes longer than what is done in
+ * them. Later blocks come from mmap, so a large array costs only the pages that are touched, and
+ * fresh pages are zero already: `dirty` remembers how far a block was ever used, and only below it
+ * must a new take be cleared by hand. Blocks double in size, so the number of system calls is
+ * logarithmic in what a run needs. After a release the next block is kept for the next take: a loop
+ * around a mark near a block's end does not map and unmap each time round.
  *
  * Under the address sanitizer what was released is poisoned and takes are kept apart, so that
  * overruns and uses after release are seen, and the blocks are roots of the leak detector. */
@@ -43,10 +45,12 @@ enum { GAP = 64 };
 enum { GAP = 0 };
 #endif
 
-/* ALIGN: a cache line, enough for any type and for vector loads. Blocks from HUGE_BLOCK on may use
+/* ALIGN: a cache line, enough for any type and for vector loads. SMALL_BLOCK: the one of the heap,
+ * below malloc's own limit for mapping. Blocks from HUGE_BLOCK on may use
  * large pages; beyond LARGEST_BLOCK they do not double any more. */
 enum {
     ALIGN = 64,
+    SMALL_BLOCK = 1 << 16,
     FIRST_BLOCK = 1 << 18,
     HUGE_BLOCK = 1 << 22,
     LARGEST_BLOCK = 1 << 28,
@@ -56,7 +60,7 @@ enum {
 /* The head of a block lies in its own first bytes; takes start at ALIGN. */
 struct block {
     struct block *below; /* the block filled before this one */
-    size_t capacity;     /* bytes of the whole mapping */
+    size_t capacity;     /* bytes of the whole block */
     size_t used;         /* next free offset from the block's start, a multiple of ALIGN */
     size_t dirty;        /* bytes beyond this offset were never handed out: still zero */
     size_t before;       /* bytes in use in the blocks below */
@@ -75,7 +79,7 @@ struct arena {
 struct arena *arena_create(void)
 {
     struct arena *a = memory_zeroed(1, sizeof *a);
-    a->next = FIRST_BLOCK;
+    a->next = SMALL_BLOCK;
     return a;
 }
 
@@ -84,8 +88,12 @@ struct arena *arena_create(void)
 static void block_unmap(struct block *b)
 {
     if (!b) return;
-    ROOT_REMOVE(b, b->capacity);
     UNPOISON(b, b->dirty);
+    if (b->capacity == SMALL_BLOCK) {
+        free(b);
+        return;
+    }
+    ROOT_REMOVE(b, b->capacity);
     munmap(b, b->capacity);
 }
 
@@ -101,9 +109,21 @@ void arena_destroy(struct arena *a)
     free(a);
 }
 
+/* block_small: the block of the heap. All of it may have been used before: it is cleared as it is
+ * taken. */
+static struct block *block_small(void)
+{
+    struct block *b = memory_aligned(ALIGN, SMALL_BLOCK, 1);
+    *b = (struct block){.capacity = SMALL_BLOCK, .used = ALIGN, .dirty = SMALL_BLOCK};
+    return b;
+}
+
 /* block_map: an empty block with room for `size` bytes after its head. */
 static struct block *block_map(struct arena *a, size_t size)
 {
+    const bool small = a->next == SMALL_BLOCK;
+    if (small) a->next = FIRST_BLOCK;
+    if (small && size <= SMALL_BLOCK - ALIGN) return block_small();
     size_t capacity = (ALIGN + size + PAGE - 1) / PAGE * PAGE;
     if (capacity < a->next) capacity = a->next;
     if (a->next < LARGEST_BLOCK) a->next *= 2;

@@ -8,6 +8,7 @@
 #include "base/units.h"
 
 #include <ctype.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -344,12 +345,27 @@ bool units_parse(const char *text, enum unit unit, double *value, char *why, int
 
 /* --- writing ---------------------------------------------------------------------------------- */
 
+/* whole_digits: those of a whole number below 2^53, without the zeros at its end. No shorter number
+ * reads back to it: another one of as many digits is at least 1 away, and half the distance of two
+ * doubles is less. */
+static int whole_digits(double x, char digits[20], int *exponent)
+{
+    char s[20];
+    int n = snprintf(s, sizeof s, "%" PRId64, (int64_t)x);
+    *exponent = n - 1;
+    while (s[n - 1] == '0') n--;
+    memcpy(digits, s, (size_t)n);
+    return n;
+}
+
 /* shortest_digits: the fewest decimal digits (without point) and the exponent of the first that
- * read back to x > 0. Tried from one digit on: printing is rare, and 17 always suffice. */
+ * read back to x > 0. Most settings are whole numbers; others are tried from one digit on, and 17
+ * always suffice. */
 static int shortest_digits(double x, char digits[20], int *exponent)
 {
     char s[40];
     int n = 0;
+    if (x < 0x1p53 && x == trunc(x)) return whole_digits(x, digits, exponent);
     do snprintf(s, sizeof s, "%.*e", n++, x);
     while (n < 17 && strtod(s, NULL) != x);
     digits[0] = s[0];

@@ -103,6 +103,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
         else err_set_at(x->err, why.kind, why.file, why.line, "%s", why.text);
         return NULL;
     }
+    machine_changes_read(&x->changes, m.path, &m.spec);
     struct start *s = TAKE(a, 1, struct start);
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) /* the first table is the whole run's */

@@ -17,6 +17,7 @@
 /* One shipped machine. */
 struct shipped_machine {
     const char *name;
+    struct machine_spec spec; /* as the file describes it */
     const char
         *text; /* "machine.key = value" lines without the network level; NULL: none is shipped */
     char hash[65];    /* SHA-256 of `text`, "" when there is none */
@@ -46,27 +47,44 @@ static void describe(const struct machine_spec *m, struct text *out)
     text_free(&all);
 }
 
+/* Where the machine of this name is shipped. */
+static void shipped_path(const char *name, struct text *path)
+{
+    text_add(path, "%s/machines/%s.yaml", plan_data_dir(), name);
+}
+
+/* Remember what is shipped under this name: `spec`, NULL where there is none. */
+static struct shipped_machine *add_shipped(struct machine_changes *c, const char *name,
+                                           const struct machine_spec *spec)
+{
+    struct shipped_machine *s = TAKE(c->arena, 1, struct shipped_machine);
+    struct text text = {0};
+    s->name = arena_text(c->arena, name);
+    if (spec != NULL) {
+        s->spec = *spec;
+        describe(spec, &text);
+        s->text = arena_text(c->arena, text.s);
+        digest_sha256_hex(text.s, text.length, s->hash);
+    }
+    text_free(&text);
+    s->next = c->known;
+    return c->known = s;
+}
+
 /* The machine of that name as shipped; without text when there is none. A user's own machine of
  * the same name does not count. */
-static struct shipped_machine *read_shipped(const char *name, struct arena *a)
+static struct shipped_machine *read_shipped(struct machine_changes *c, const char *name)
 {
-    struct shipped_machine *s = TAKE(a, 1, struct shipped_machine);
-    struct text path = {0}, text = {0};
+    struct text path = {0};
     struct machine_file file;
     struct err ignored;
     err_clear(&ignored);
-    s->name = arena_text(a, name);
-    text_add(&path, "%s/machines/%s.yaml", plan_data_dir(), name);
+    shipped_path(name, &path);
     /* A name with a slash would lead out of the folder. */
-    if (!strchr(name, '/') && access(path.s, R_OK) == 0 &&
-        machine_file_read(&file, path.s, NULL, a, &ignored)) {
-        describe(&file.spec, &text);
-        s->text = arena_text(a, text.s);
-        digest_sha256_hex(text.s, text.length, s->hash);
-    }
+    const bool there = !strchr(name, '/') && access(path.s, R_OK) == 0 &&
+                       machine_file_read(&file, path.s, NULL, c->arena, &ignored);
     text_free(&path);
-    text_free(&text);
-    return s;
+    return add_shipped(c, name, there ? &file.spec : NULL);
 }
 
 /* The rest of the line of `text` that begins with the `n` letters at `key`; NULL when there is
@@ -130,14 +148,29 @@ void machine_changes_between(const struct machine_spec *from, const struct machi
     text_free(&members);
 }
 
+/* What is remembered of that name; NULL: nothing yet. */
+static const struct shipped_machine *known(const struct machine_changes *c, const char *name)
+{
+    for (const struct shipped_machine *s = c->known; s; s = s->next)
+        if (strcmp(s->name, name) == 0) return s;
+    return NULL;
+}
+
 /* Read once per plan and name. */
 static const struct shipped_machine *shipped(struct machine_changes *c, const char *name)
 {
-    for (struct shipped_machine *s = c->known; s; s = s->next)
-        if (strcmp(s->name, name) == 0) return s;
-    struct shipped_machine *s = read_shipped(name, c->arena);
-    s->next = c->known;
-    return c->known = s;
+    const struct shipped_machine *s = known(c, name);
+    return s != NULL ? s : read_shipped(c, name);
+}
+
+/* Mostly the machine of a plan is the shipped file itself: it need not be read a second time. */
+void machine_changes_read(struct machine_changes *c, const char *path,
+                          const struct machine_spec *spec)
+{
+    struct text own = {0};
+    shipped_path(spec->name, &own);
+    if (strcmp(own.s, path) == 0 && known(c, spec->name) == NULL) add_shipped(c, spec->name, spec);
+    text_free(&own);
 }
 
 /* Notes in *run what differs. The texts live in c->arena, as long as the plan. */
@@ -148,9 +181,12 @@ void machine_changes_note(struct machine_changes *c, struct run_spec *run)
     if (!c->any || memcmp(&c->last, &run->machine, sizeof c->last) != 0) {
         const struct shipped_machine *s = shipped(c, run->machine.name);
         struct text own = {0}, changes = {0};
-        describe(&run->machine, &own);
         text_add(&changes, "{");
-        if (s->text && strcmp(own.s, s->text) != 0) add_differences(&changes, own.s, s->text);
+        /* The same bytes have the same text, which takes longer to print than to compare. */
+        if (s->text && memcmp(&s->spec, &run->machine, sizeof s->spec) != 0) {
+            describe(&run->machine, &own);
+            if (strcmp(own.s, s->text) != 0) add_differences(&changes, own.s, s->text);
+        }
         text_add(&changes, "}");
         /* NULL: nothing to compare with; "{}": as shipped. */
         c->text = s->text ? arena_text(c->arena, changes.s) : NULL;

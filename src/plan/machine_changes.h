@@ -27,6 +27,11 @@ struct machine_changes {
  * left out. A shipped file that cannot be read counts as none. */
 void machine_changes_note(struct machine_changes *c, struct run_spec *run);
 
+/* machine_changes_read: the file `path` was read, and describes `spec`: where it is the shipped
+ * one, it is not read again for the comparison. */
+void machine_changes_read(struct machine_changes *c, const char *path,
+                          const struct machine_spec *spec);
+
 /* machine_changes_between: what `own` has otherwise than `from`, as such a JSON object, appended to
  * *out. */
 void machine_changes_between(const struct machine_spec *from, const struct machine_spec *own,

@@ -61,6 +61,7 @@ struct store {
     char *remark; /* owned, what is to be told about opening it, NULL: nothing */
     bool writable;
     bool fresh;                               /* its file was made by this store_open */
+    bool unpublished;                         /* STORE_WHOLE: its file is still to be made */
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */
     /* when others wrote last, and since when nobody has (guard.c) */

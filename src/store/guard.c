@@ -116,6 +116,12 @@ static int wait_for_lock(void *context, int tries)
 
 /* --- what is set ----------------------------------------------------------------------------- */
 
+void guard_library(void)
+{
+    /* Refused, which is no harm, once the library is in use. */
+    sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+}
+
 bool guard_begin(struct store *s, struct err *e)
 {
     sqlite3_busy_handler(s->db, wait_for_lock, s);

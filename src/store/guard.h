@@ -8,6 +8,10 @@
 
 #include "store/connection.h"
 
+/* guard_library: before the first database is opened: SQLite keeps no statistics of its memory,
+ * which costs two locks for each block. */
+void guard_library(void);
+
 /* guard_begin: right after opening, before anything is read: no function that a schema could misuse
  * (trusted_schema, until guard_schema has found it to be ours), no triggers, no writing to the
  * schema's own table, cells checked, limits of lengths; sum() that never fails (guard.c). A lock is

@@ -5,9 +5,11 @@
 #include "store/image.h"
 
 #include <errno.h>
+#include <stdint.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/check.h"
 #include "store/rows.h"
 
 /* Bytes 18 and 19 of the header: 2 is WAL, 1 a rollback journal (1.3.3 of the file format). */
@@ -35,7 +37,7 @@ static bool write_all(int file, const unsigned char *bytes, size_t size)
 }
 
 /* The header is the only part that differs, so the rest is written from where it lies. */
-static bool write_image(int file, const unsigned char *image, size_t size, bool wal)
+bool image_put(int file, const unsigned char *image, size_t size, bool wal)
 {
     unsigned char header[HEADER_BYTES];
     memcpy(header, image, sizeof header);
@@ -46,7 +48,7 @@ static bool write_image(int file, const unsigned char *image, size_t size, bool 
 
 bool image_write(int file, bool wal)
 {
-    if (schema_image_bytes > 0) return write_image(file, schema_image, schema_image_bytes, wal);
+    if (schema_image_bytes > 0) return image_put(file, schema_image, schema_image_bytes, wal);
     sqlite3 *db = NULL;
     sqlite3_int64 size = 0;
     unsigned char *image = NULL;
@@ -55,25 +57,22 @@ bool image_write(int file, bool wal)
     sqlite3_close(db);
     /* Nothing but memory can be short here. */
     errno = ENOMEM;
-    const bool ok = image != NULL && write_image(file, image, (size_t)size, wal);
+    const bool ok = image != NULL && image_put(file, image, (size_t)size, wal);
     sqlite3_free(image);
     return ok;
 }
 
-/* A second connection reads the bytes where they lie; all pages are copied at once. */
+/* SQLite works on a copy of the bytes as on a file: pages that nobody asks for are never looked
+ * at. */
 bool image_load(sqlite3 *db)
 {
     if (schema_image_bytes == 0) return from_text(db);
-    sqlite3 *from = NULL;
     const sqlite3_int64 size = (sqlite3_int64)schema_image_bytes;
-    /* Read-only: SQLite does not write to what it is given, whatever its type says. */
-    bool ok = sqlite3_open(":memory:", &from) == SQLITE_OK &&
-              sqlite3_deserialize(from, "main", (unsigned char *)schema_image, size, size,
-                                  SQLITE_DESERIALIZE_READONLY) == SQLITE_OK;
-    sqlite3_backup *b = ok ? sqlite3_backup_init(db, "main", from, "main") : NULL;
-    if (b != NULL) sqlite3_backup_step(b, -1);
-    /* The result of the copy is that of its end. */
-    ok = b != NULL && sqlite3_backup_finish(b) == SQLITE_OK;
-    sqlite3_close(from);
-    return ok;
+    unsigned char *copy = sqlite3_malloc64(schema_image_bytes);
+    if (copy == NULL) check_memory(schema_image_bytes);
+    memcpy(copy, schema_image, schema_image_bytes);
+    sqlite3_int64 most = INT64_MAX; /* instead of 1 GiB */
+    const unsigned how = SQLITE_DESERIALIZE_RESIZEABLE | SQLITE_DESERIALIZE_FREEONCLOSE;
+    return sqlite3_deserialize(db, "main", copy, size, size, how) == SQLITE_OK &&
+           sqlite3_file_control(db, "main", SQLITE_FCNTL_SIZE_LIMIT, &most) == SQLITE_OK;
 }

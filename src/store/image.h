@@ -17,6 +17,10 @@ extern const size_t schema_image_bytes;
  * journal. Returns false with errno set. */
 bool image_write(int file, bool wal);
 
+/* image_put: the (size) bytes of a database into the empty file `file`, with the journal as above.
+ * Returns false with errno set. */
+bool image_put(int file, const unsigned char *image, size_t size, bool wal);
+
 /* image_load: the same into the empty database `db` in memory. Returns false with db's error
  * set. */
 bool image_load(sqlite3 *db);

@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/vfs.h>
 #include <unistd.h>
 
 #include "base/beside.h"
@@ -23,6 +22,7 @@
 #include "store/connection.h"
 #include "store/guard.h"
 #include "store/image.h"
+#include "store/publish.h"
 #include "store/rows.h"
 #include "store/schema.h"
 #include "store/upgrade.h"
@@ -67,24 +67,10 @@ static bool create_schema(struct store *s, struct err *e)
     return ok;
 }
 
-/* Whether `path` is on a file system that several hosts share. Magic numbers of statfs(2): NFS,
- * SMB, CIFS, SMB2, Lustre, GPFS, BeeGFS, 9P, Ceph, AFS and FUSE. */
-static bool on_network(const char *path)
-{
-    static const unsigned magic[] = {0x6969,     0x517B,     0xFF534D42, 0xFE534D42,
-                                     0x0BD00BD0, 0x47504653, 0x19830326, 0x01021997,
-                                     0x00C36400, 0x5346414F, 0x65735546};
-    struct statfs info;
-    if (statfs(path, &info) != 0) return false;
-    for (size_t i = 0; i < sizeof magic / sizeof magic[0]; i++)
-        if ((unsigned)info.f_type == magic[i]) return true;
-    return false;
-}
-
 /* See the head of this file. */
 static bool set_journal(struct store *s, struct err *e)
 {
-    return on_network(s->path)
+    return publish_network(s->path)
                ? store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e)
                : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
 }
@@ -137,15 +123,6 @@ static bool prepare_reader(struct store *s, struct err *e)
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
-/* The folder that `path` lies in, with its slash. */
-static char *folder_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    char *folder =
-        slash == NULL ? memory_text("./") : memory_text_part(path, (size_t)(slash - path) + 1);
-    return folder;
-}
-
 /* Mistakes in the path that SQLite would report vaguely, before it is called. *exists when there
  * is a file. */
 static bool check_path(const char *path, enum store_mode mode, bool *exists, struct err *e)
@@ -158,47 +135,11 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     if (!*exists && mode == STORE_READ)
         return err_set(e, ERR_NO_INPUT, "there is no database %s; `mimdsim run` makes one", path);
     if (*exists) return true;
-    char *folder = folder_of(path);
+    char *folder = publish_folder(path);
     bool writable = access(folder, W_OK | X_OK) == 0;
     free(folder);
     /* access has set errno */
     return writable || err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
-}
-
-/* Logs of a database that was removed after a crash would be taken for the new one's. */
-static void remove_stale_logs(const char *path)
-{
-    static const char *const suffix[] = {"-wal", "-shm", "-journal"};
-    for (int i = 0; i < 3; i++) {
-        struct text log = {0};
-        text_add(&log, "%s%s", path, suffix[i]);
-        if (access(log.s, F_OK) == 0 && access(path, F_OK) != 0) unlink(log.s);
-        text_free(&log);
-    }
-}
-
-/* Make the file of a new database. It is written beside its place and linked there when it is
- * whole, so no one ever sees, and no failure leaves, half of one; when another program was faster,
- * its file is the one. */
-static bool make_file(const char *path, struct err *e)
-{
-    char *folder = folder_of(path), *beside = NULL;
-    const bool wal = !on_network(folder);
-    free(folder);
-    remove_stale_logs(path);
-    int file = beside_open(path, &beside);
-    bool ok = file >= 0 && image_write(file, wal) && fdatasync(file) == 0;
-    /* A file system without links: rename, which could replace a file that appeared meanwhile. */
-    if (ok && link(beside, path) != 0 && errno != EEXIST) ok = rename(beside, path) == 0;
-    if (!ok)
-        err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path,
-                strerror(errno));
-    if (file >= 0) {
-        unlink(beside);
-        close(file);
-    }
-    free(beside);
-    return ok;
 }
 
 /* A database in WAL mode in a folder that cannot be written opens only when declared unchanging. */
@@ -253,12 +194,14 @@ static bool open_writer(struct store *s, struct err *e)
     return guard_begin(s, e) && prepare_writer(s, e);
 }
 
-/* Nothing of it survives store_close. `passing`: rows of single ranks and settings are not even
- * made. */
-static bool open_memory(struct store *s, bool passing, struct err *e)
+/* Nothing of it survives store_close, unless it is published. With STORE_MEMORY rows of single
+ * ranks and settings are not even made. */
+static bool open_memory(struct store *s, enum store_mode mode, struct err *e)
 {
-    if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
-    s->passing = passing;
+    const int how = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+    if (sqlite3_open_v2(":memory:", &s->db, how, NULL) != SQLITE_OK) return store_failed(s, e);
+    s->passing = mode == STORE_MEMORY;
+    s->unpublished = mode == STORE_WHOLE;
     if (!guard_begin(s, e)) return false;
     guard_trust(s);
     return (image_load(s->db) || store_failed(s, e)) &&
@@ -269,17 +212,19 @@ static bool open_memory(struct store *s, bool passing, struct err *e)
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists = true;
-    if (mode == STORE_WRITE) beside_clean(path);
+    if (mode == STORE_WRITE || mode == STORE_WHOLE) beside_clean(path);
     const bool memory = mode == STORE_MEMORY || mode == STORE_SCRATCH;
     if (!memory && !check_path(path, mode, &exists, e)) return NULL;
-    if (!exists && !make_file(path, e)) return NULL;
+    const bool later = !exists && mode == STORE_WHOLE;
+    if (!exists && !later && !publish_new(path, e)) return NULL;
+    guard_library();
     struct store *s = memory_zeroed(1, sizeof *s);
     s->path = memory_text(path);
     s->writable = mode != STORE_READ;
     s->fresh = !exists;
-    const bool ok = memory        ? open_memory(s, mode == STORE_MEMORY, e)
-                    : s->writable ? open_writer(s, e)
-                                  : open_reader(s, e);
+    const bool ok = memory || later ? open_memory(s, mode, e)
+                    : s->writable   ? open_writer(s, e)
+                                    : open_reader(s, e);
     if (ok) return s;
     store_close(s);
     return NULL;

@@ -22,7 +22,8 @@ enum store_mode {
     STORE_WRITE,
     STORE_MEMORY, /* a passing database without a file: `path` is a name for messages; settings and
                      rows of single ranks are not kept */
-    STORE_SCRATCH /* the same with all rows */
+    STORE_SCRATCH, /* the same with all rows */
+    STORE_WHOLE    /* as STORE_WRITE, but a new database gets its file from store_publish alone */
 };
 
 /* store_open: open or (all but STORE_READ) make the database `path`. One of an older version is
@@ -30,6 +31,12 @@ enum store_mode {
  * STORE_READ; store_remark tells it. Returns NULL with ERR_NO_INPUT (read, not there), ERR_DATA
  * (not ours, newer, or too old), ERR_BUSY (locked), ERR_CREATE or ERR_IO (read-only, disk full). */
 struct store *store_open(const char *path, enum store_mode mode, struct err *e);
+
+/* store_publish: a database of STORE_WHOLE that has no file yet gets one, with all rows that were
+ * committed, whole or not at all; where another program made the file meanwhile, the rows are added
+ * to its. Without it such a database ends with store_close. Others: nothing to do. Returns false
+ * with ERR_CREATE, ERR_IO, or as store_open and store_merge (merge.h). */
+bool store_publish(struct store *s, struct err *e);
 
 /* store_remark: a sentence for the user about how the database was opened, NULL: nothing to say. */
 const char *store_remark(const struct store *s);

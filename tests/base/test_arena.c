@@ -37,6 +37,23 @@ static void takes_are_zeroed_aligned_and_apart(void **state)
     arena_destroy(a);
 }
 
+/* The small first block comes from the heap, where the arena before has left its bytes. */
+static void memory_of_an_arena_before_is_zeroed(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        struct arena *a = arena_create();
+        const size_t size = i % 2 == 0 ? 60000 : 100;
+        for (int k = 0; k < (i % 2 == 0 ? 3 : 600); k++) {
+            unsigned char *p = arena_take(a, size);
+            assert_int_equal((uintptr_t)p % 64, 0);
+            assert_true(all_are(p, size, 0));
+            memset(p, 255, size);
+        }
+        arena_destroy(a);
+    }
+}
+
 static void memory_taken_again_after_a_release_is_zeroed(void **state)
 {
     (void)state;
@@ -112,6 +129,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(takes_are_zeroed_aligned_and_apart),
+        cmocka_unit_test(memory_of_an_arena_before_is_zeroed),
         cmocka_unit_test(memory_taken_again_after_a_release_is_zeroed),
         cmocka_unit_test(marks_nest_and_spare_what_was_taken_before),
         cmocka_unit_test(the_peak_is_the_largest_use_not_the_last),

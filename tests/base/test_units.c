@@ -171,6 +171,11 @@ static void values_are_printed_for_people(void **state)
     prints(0, UNIT_PERCENT, "0 %");
     prints(1e-30, UNIT_TIME, "1e-18 ps");
     prints(2, UNIT_MASS, "2 kg");
+    /* whole numbers on both sides of 2^53, the last one of which every whole number is a double */
+    prints(9007199254740991, UNIT_NONE, "9007199254740991");
+    prints(9007199254740994, UNIT_NONE, "9007199254740994");
+    prints(120300, UNIT_NONE, "120300");
+    prints(1e15, UNIT_NONE, "1000000000000000");
     prints(NAN, UNIT_TIME, "nan s");
     prints(-INFINITY, UNIT_NONE, "-inf");
 }

@@ -94,3 +94,36 @@ digests() { sql "$1" 'SELECT level, n, digest FROM run ORDER BY level, n'; }
     works mimdsim plot elsewhere/moved.db fig6 --dir again
     [ "$(sha256sum <again/fig6.svg)" = "$first" ]
 }
+
+@test "a single run makes its database when it is stored, whole, beside others that do the same" {
+    scenario
+    for n in 2 3 8; do
+        mimdsim run small.yaml --quiet -o one.db --set n=$n --set level=loggp >out$n 2>err$n &
+    done
+    wait
+    cat err*
+    # nothing but the database: neither logs nor what was written beside it
+    [ "$(ls -d one.db*)" = one.db ]
+    sql_is one.db "SELECT count(*), count(DISTINCT n), count(DISTINCT status) FROM run" '3|3|1'
+    sql_is one.db 'PRAGMA integrity_check' ok
+    sql_is one.db 'PRAGMA foreign_key_check' ''
+    # the same rows as those of a database that was there before
+    works mimdsim run small.yaml --quiet -o many.db --set n=2,3
+    works mimdsim run small.yaml --quiet -o many.db --set n=8
+    rows='SELECT config_hash, digest, makespan_ps FROM run WHERE level = "loggp" ORDER BY 1'
+    [ "$(sql one.db "$rows")" = "$(sql many.db "$rows")" ]
+    for table in stage error_check baseline run_setting run_family; do
+        sql_is one.db "SELECT count(*) > 0 FROM $table" 1
+    done
+}
+
+@test "a single run that cannot make its database says so and leaves nothing" {
+    scenario
+    mkdir closed
+    fails_with 73 mimdsim run small.yaml --quiet -o nowhere/one.db --set n=2 --set level=loggp
+    stderr_says 'cannot make database nowhere/one.db'
+    [ ! -e nowhere ]
+    fails_with 65 mimdsim run small.yaml --quiet -o closed --set n=2 --set level=loggp
+    stderr_says 'closed is a folder'
+    [ -z "$(ls closed)" ]
+}
