@@ -7,6 +7,7 @@
 #include "app/arguments.h"
 #include "app/flag.h"
 #include "app/verb.h"
+#include "app/why_beside.h"
 #include "app/why_print.h"
 #include "plan/file_kind.h"
 #include "spec/identity.h"
@@ -14,13 +15,15 @@
 
 static const char doc[] = "Explain what the time of a run is made of: its critical path by cause, "
                           "stage and rank, what each parameter of the "
-                          "machine contributes, and what idealised machines would gain.\n\n"
+                          "machine contributes, what idealised machines would gain, and how "
+                          "much later everything else may be (slack).\n\n"
                           "Example: mimdsim why speedup-t3e --set n=128\n"
                           "         mimdsim why mimdsim.db 3\n"
                           "\vThe first point of SCENARIO is explained, or with a database the run "
                           "RUN (column id of table run), which is made "
-                          "again. A run of a scenario is stored with its critical path (tables "
-                          "critical_path, sensitivity and ideal).\n\n"
+                          "again. A run of a scenario is stored with its explanation (tables "
+                          "critical_path, sensitivity, path_range, ideal, path_resource, slack, "
+                          "rank_slack, roofline); the figures are why, slack and roofline.\n\n"
                           "The critical path is the chain of operations that determines when the "
                           "last rank ends: its durations add up to the run's time. At levels loggp "
                           "and link the path goes through the message that holds a resource; at "
@@ -28,19 +31,26 @@ static const char doc[] = "Explain what the time of a run is made of: its critic
                           "path pays the parameter: latencies, bytes, operations. The last column "
                           "tells by which factor the time behind a parameter may grow before the "
                           "run takes 5 % longer; it is confirmed by simulation. 'On another path' "
-                          "means that other operations determine the time by then.\n\n"
+                          "means that other operations determine the time by then, and 'from' the "
+                          "factor at which they take over.\n\n"
+                          "'Perfect balance' lets every rank compute the mean over all ranks in "
+                          "each stage. Slack is the longest delay that leaves the run as long as "
+                          "it is. The last table tells which rate computing, the port and message "
+                          "software would allow by themselves.\n\n"
                           "--brief: the path and the contributions alone, from one run.";
 
-static const char run_sql[] = "SELECT config_text, rep FROM run WHERE id = CAST(?1 AS INTEGER)";
+static const char run_sql[] =
+    "SELECT r.config_text, r.rep, l.name FROM run r JOIN v_label l ON l.run_id = r.id "
+    "WHERE r.id = CAST(?1 AS INTEGER)";
 
 /* The row of the run that was asked for. */
 struct found {
-    struct text config;
+    struct text config, name;
     int rep;
     bool there;
 };
 
-/* The first row, and there is only one. */
+/* The first row, and there is only one. Its texts are copied: they live as long as the query. */
 static bool take_config(void *context, int ncolumn, const char *const *name,
                         const char *const *value)
 {
@@ -49,6 +59,7 @@ static bool take_config(void *context, int ncolumn, const char *const *name,
     /* A row of an older database may lack its settings: then it counts as not found. */
     if (value[0] == NULL || value[1] == NULL) return false;
     text_add(&f->config, "%s", value[0]);
+    text_add(&f->name, "%s", value[2] != NULL ? value[2] : "");
     f->rep = atoi(value[1]);
     f->there = true;
     return false;
@@ -75,14 +86,18 @@ static bool from_database(const struct common *c, struct run_spec *run, struct a
                      why);
     /* The repetition is no setting, but the seed of its random numbers depends on it. */
     if (ok) run->rep = f.rep;
+    /* What it was called then is no setting, either. */
+    if (ok && f.name.length > 0) run->called = arena_text(a, f.name.s);
     text_free(&f.config);
+    text_free(&f.name);
     store_close(s);
     return ok;
 }
 
 /* ---- rows ---- */
 
-/* Each table is emptied first, so that explaining a run again leaves no row of before. */
+/* Each table is emptied first, so that explaining a run again leaves no row of before. All of it
+ * is written within one transaction: a run has its whole explanation, or the one of before. */
 static bool put_shares(struct store *s, int64_t run, const struct why *w, struct err *e)
 {
     static const char *const name[] = {"run_id", "stage", "cause", "time_ps", "steps"};
@@ -117,6 +132,19 @@ static bool put_parameters(struct store *s, int64_t run, const struct why *w, st
     return ok;
 }
 
+/* Only parameters behind which another path was found have one. */
+static bool put_ranges(struct store *s, int64_t run, const struct why *w, struct err *e)
+{
+    static const char *const name[] = {"run_id", "key", "factor"};
+    bool ok = store_delete(s, "path_range", "run_id", store_int(run), e);
+    for (int i = 0; ok && i < w->nparameter; i++) {
+        const struct why_parameter *p = &w->parameter[i];
+        const struct store_value v[] = {store_int(run), store_text(p->key), store_real(p->range)};
+        ok = p->range <= 0 || store_insert(s, "path_range", 3, name, v, e);
+    }
+    return ok;
+}
+
 /* What a level cannot run is NULL. */
 static bool put_limits(struct store *s, int64_t run, const struct why *w, struct err *e)
 {
@@ -142,7 +170,8 @@ static bool put_all(const struct common *c, const struct run_spec *spec, const s
         s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) && store_begin(s, e);
     if (ok) {
         const int64_t run = store_run_id(s, spec);
-        ok = put_shares(s, run, w, e) && put_parameters(s, run, w, e) && put_limits(s, run, w, e);
+        ok = put_shares(s, run, w, e) && put_parameters(s, run, w, e) &&
+             put_ranges(s, run, w, e) && put_limits(s, run, w, e) && why_beside_put(s, run, w, e);
         if (ok) ok = store_commit(s, e);
         else store_rollback(s);
     }
@@ -157,7 +186,7 @@ static bool explain(const struct common *c, const struct run_spec *spec, bool ke
                     struct arena *a, struct err *e)
 {
     struct why w;
-    if (!why_study(spec, brief ? 0 : WHY_TOLERANCES | WHY_LIMITS, c->jobs, c->quiet, a, &w, e))
+    if (!why_study(spec, brief ? 0 : WHY_ALL, c->jobs, c->quiet, a, &w, e))
         return false;
     if (keep && !put_all(c, spec, &w, e)) return false;
     if (c->json) why_print_json(spec, &w, stdout);
@@ -165,6 +194,8 @@ static bool explain(const struct common *c, const struct run_spec *spec, bool ke
     return true;
 }
 
+/* Everything that a user can get wrong is found before the first run: a study takes a while. The
+ * exit status is that of any verb; what was printed before a figure or a row failed stays valid. */
 int cmd_why(int argc, char **argv)
 {
     struct common c;

@@ -6,7 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/why_beside.h"
 #include "base/json.h"
+#include "spec/field.h"
+#include "spec/run_label.h"
 
 /* Of the longest list; JSON and the database have all of it. */
 enum { ROWS = 10 };
@@ -15,20 +18,6 @@ enum { ROWS = 10 };
 static double share_of(const struct why *w, int64_t ps)
 {
     return w->run.makespan_ps > 0 ? (double)ps / (double)w->run.makespan_ps : 0;
-}
-
-/* A duration with a unit in which it reads well. */
-static const char *duration(double ps, char *buffer, size_t size)
-{
-    static const struct {
-        double ps;
-        const char *unit;
-    } unit[] = {{1e12, "s"}, {1e9, "ms"}, {1e6, "us"}, {1e3, "ns"}, {1, "ps"}};
-    /* The largest unit that leaves a number of at least 1. */
-    int k = 0;
-    while (k < 4 && fabs(ps) < unit[k].ps) k++;
-    snprintf(buffer, size, "%.4g %s", ps / unit[k].ps, unit[k].unit);
-    return buffer;
 }
 
 /* ---- words ---- */
@@ -62,15 +51,69 @@ static int sums_of(const struct why *w, struct sum *of)
     return n;
 }
 
+/* What to do about it: a reader who stops here knows where an improvement would count at all.
+ * Which of the idealised machines would gain most, and what an even share of the work would. */
+static void print_help(const struct why *w, FILE *out)
+{
+    const struct why_limit *best = NULL, *last = NULL;
+    for (int i = 0; i < w->nlimit; i++) {
+        const struct why_limit *l = &w->limit[i];
+        if (l->makespan_ps > 0 && (best == NULL || l->makespan_ps < best->makespan_ps)) best = l;
+        if (l->makespan_ps > 0) last = l;
+    }
+    if (best == NULL) return;
+    fprintf(out, "Of the idealised machines %s helps most: %.4g times as fast", best->name,
+            (double)w->run.makespan_ps / (double)best->makespan_ps);
+    /* The last one changes the program's shares of work, not the machine. */
+    if (last != best)
+        fprintf(out, "; %s: %.4g times", last->name,
+                (double)w->run.makespan_ps / (double)last->makespan_ps);
+    fprintf(out, ".\n");
+}
+
+/* "machine.network.hop_latency" -> its value times `factor`, with its unit: four digits are enough.
+ */
+static const char *scaled_value(const struct why_parameter *p, double factor, char *buffer,
+                                int size)
+{
+    const struct field_table *table;
+    const struct field *f = p->value > 0 ? field_find_full(p->key, &table) : NULL;
+    char digits[32];
+    if (f == NULL) return NULL;
+    snprintf(digits, sizeof digits, "%.4g", p->rate ? p->value / factor : p->value * factor);
+    units_print(strtod(digits, NULL), f->unit, buffer, size);
+    return buffer;
+}
+
+/* How much room the most important parameters have, as values with units: "up to 7.9 us" is what a
+ * designer can hold a data sheet against, a factor is not. */
+static void print_room(const struct why *w, FILE *out)
+{
+    char value[64];
+    int told = 0;
+    for (int i = 0; i < w->nparameter && told < 3; i++) {
+        const struct why_parameter *p = &w->parameter[i];
+        const char *to =
+            p->tolerance > 0 ? scaled_value(p, p->tolerance, value, sizeof value) : NULL;
+        if (to == NULL) continue;
+        fprintf(out, "%s %s may %s to %s", told++ ? ";" : "Before the run is 5 % longer,",
+                p->key + strlen("machine."), p->rate ? "fall" : "rise", to);
+    }
+    if (told > 0) fprintf(out, ".\n");
+}
+
 /* The main part of each of them is named, so that the reader knows where to look. */
 static void print_sentences(const struct run_spec *spec, const struct why *w, FILE *out)
 {
     char time[32];
     struct sum sum[PATH_CAUSES];
     const int n = sums_of(w, sum);
-    fprintf(out, "%s on %s, n = %d, P = %d: %s, of which\n", spec->kernel.name, spec->machine.name,
-            spec->model.nbody, spec->nrank,
-            duration((double)w->run.makespan_ps, time, sizeof time));
+    struct text name = {0};
+    run_label(spec, &name);
+    fprintf(out, "%s on %s, n = %d, P = %d: %s, of which\n", spec->kernel.name,
+            name.s, spec->model.nbody, spec->nrank,
+            why_duration((double)w->run.makespan_ps, time, sizeof time));
+    text_free(&name);
     /* Three causes say most of it; the table has the others. */
     for (int i = 0; i < n && i < 3; i++) {
         /* Shares come longest first, so the first one of a cause is its largest part. */
@@ -86,6 +129,9 @@ static void print_sentences(const struct run_spec *spec, const struct why *w, FI
             "The critical path follows %lld messages over %d of %d ranks and ends on rank %d.\n",
             (long long)w->messages, w->ranks, w->run.nrank,
             w->run.npath > 0 ? w->run.path[w->run.npath - 1].rank : 0);
+    why_slack_sentence(w, out);
+    print_help(w, out);
+    print_room(w, out);
 }
 
 /* ---- tables ---- */
@@ -99,14 +145,14 @@ static void print_causes(const struct why *w, FILE *out)
     fprintf(out, "\nThe path by cause:\n%22s  %12s  %7s  %8s\n", "cause", "time", "share", "steps");
     for (int i = 0; i < n; i++)
         fprintf(out, "%22s  %12s  %5.1f %%  %8lld\n", path_cause_word(sum[i].cause),
-                duration((double)sum[i].time_ps, time, sizeof time),
+                why_duration((double)sum[i].time_ps, time, sizeof time),
                 100 * share_of(w, sum[i].time_ps), (long long)sum[i].steps);
     fprintf(out, "\nThe largest parts:\n%22s  %22s  %12s  %7s\n", "stage", "cause", "time",
             "share");
     for (int i = 0; i < w->nshare && i < ROWS; i++)
         fprintf(out, "%22s  %22s  %12s  %5.1f %%\n", w->run.stage_name[w->share[i].stage],
                 path_cause_word(w->share[i].cause),
-                duration((double)w->share[i].time_ps, time, sizeof time),
+                why_duration((double)w->share[i].time_ps, time, sizeof time),
                 100 * share_of(w, w->share[i].time_ps));
     fprintf(out, "\nRanks with the most of it:");
     for (int i = 0; i < w->nrank; i++)
@@ -137,8 +183,11 @@ static void print_parameters(const struct why *w, FILE *out)
             /* A rate is made worse by dividing it, a duration by multiplying. */
             snprintf(change, sizeof change, "%s %.4g%s", p->rate ? "divided by" : "times",
                      p->tolerance, p->same_path ? "" : ", on another path");
+        if (p->range > 0)
+            snprintf(change + strlen(change), sizeof change - strlen(change), " from %.4g",
+                     p->range);
         fprintf(out, "%36s  %12s  %5.1f %%  %10s  %s\n", p->key,
-                duration((double)p->time_ps, time, sizeof time), 100 * share_of(w, p->time_ps),
+                why_duration((double)p->time_ps, time, sizeof time), 100 * share_of(w, p->time_ps),
                 count, change);
     }
 }
@@ -155,19 +204,21 @@ static void print_limits(const struct why *w, FILE *out)
         if (l->makespan_ps <= 0) fprintf(out, "%22s  %12s  %8s  %s\n", l->name, "-", "-", l->what);
         else
             fprintf(out, "%22s  %12s  %7.2fx  %s\n", l->name,
-                    duration((double)l->makespan_ps, time, sizeof time),
+                    why_duration((double)l->makespan_ps, time, sizeof time),
                     /* The largest gain that any improvement of this kind can give. */
                     (double)w->run.makespan_ps / (double)l->makespan_ps, l->what);
     }
 }
 
-/* Words first, numbers behind them. */
+/* Words first, numbers behind them: the answer is read on the first lines, and the tables are for
+ * whoever wants to know where it comes from. */
 void why_print(const struct run_spec *spec, const struct why *w, FILE *out)
 {
     print_sentences(spec, w, out);
     print_causes(w, out);
     print_parameters(w, out);
     print_limits(w, out);
+    why_beside_print(w, out);
 }
 
 /* ---- JSON ---- */
@@ -187,6 +238,7 @@ static void json_parameters(struct json *j, const struct why *w)
         json_key_real(j, "count", p->count);
         json_key_real(j, "factor_5_percent", p->tolerance > 0 ? p->tolerance : NAN);
         json_key_bool(j, "same_path", p->same_path);
+        json_key_real(j, "other_path_at", p->range > 0 ? p->range : NAN);
         json_end(j);
     }
     json_end(j);
@@ -226,10 +278,14 @@ static void json_limits(struct json *j, const struct why *w)
 /* The same order as on the terminal. */
 void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out)
 {
+    struct text name = {0};
+    run_label(spec, &name);
     struct json j = json_make(out);
     json_object(&j);
     json_key_text(&j, "kernel", spec->kernel.name);
     json_key_text(&j, "machine", spec->machine.name);
+    json_key_text(&j, "name", name.s);
+    text_free(&name);
     json_key_int(&j, "n", spec->model.nbody);
     json_key_int(&j, "P", spec->nrank);
     json_key_int(&j, "makespan_ps", w->run.makespan_ps);
@@ -238,6 +294,7 @@ void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out)
     json_shares(&j, w);
     json_parameters(&j, w);
     json_limits(&j, w);
+    why_beside_json(w, &j);
     json_end(&j);
     json_finish(&j);
 }

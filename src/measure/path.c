@@ -7,21 +7,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "base/size.h"
-
-/* `before` has a number of 32 bits: 128 GiB of nodes. */
-struct node {
-    int64_t time, count; /* of computing: the number of its work, -1: not counted */
-    uint32_t before;
-    int32_t rank, resource;
-    uint8_t cause, stage;
-};
-
-/* Doubling keeps the cost of a node constant; nodes are found by number, so they may move. */
-struct path_log {
-    struct node *node;
-    struct work *work;
-    int64_t n, capacity, nwork, work_capacity;
-};
+#include "measure/path_log.h"
 
 /* From the one list of causes. */
 const char *path_cause_word(enum path_cause cause)
@@ -47,7 +33,7 @@ struct path_log *path_log_create(void)
 {
     struct path_log *p = memory_zeroed(1, sizeof *p);
     p->node = grown(NULL, &p->capacity, sizeof *p->node);
-    p->node[p->n++] = (struct node){.cause = PATH_START, .resource = -1};
+    p->node[p->n++] = (struct path_node){.cause = PATH_START, .resource = -1};
     return p;
 }
 
@@ -56,6 +42,7 @@ void path_log_destroy(struct path_log *p)
     if (p == NULL) return;
     free(p->node);
     free(p->work);
+    free(p->loser);
     free(p);
 }
 
@@ -70,15 +57,15 @@ uint32_t path_add(struct path_log *p, uint32_t before, int64_t time, enum path_c
     /* numbers of nodes have 32 bits */
     CHECK(p->n < UINT32_MAX);
     /* Only now: growing may have moved the array. */
-    const struct node *b = &p->node[before];
+    const struct path_node *b = &p->node[before];
     /* A rank or stage that is not given is that of the node before. */
-    const struct node made = {.time = time,
-                              .count = count,
-                              .before = before,
-                              .rank = rank >= 0 ? rank : b->rank,
-                              .resource = resource,
-                              .cause = (uint8_t)cause,
-                              .stage = stage >= 0 ? (uint8_t)stage : b->stage};
+    const struct path_node made = {.time = time,
+                                   .count = count,
+                                   .before = before,
+                                   .rank = rank >= 0 ? rank : b->rank,
+                                   .resource = resource,
+                                   .cause = (uint8_t)cause,
+                                   .stage = stage >= 0 ? (uint8_t)stage : b->stage};
     p->node[p->n] = made;
     return (uint32_t)p->n++;
 }
@@ -95,6 +82,50 @@ uint32_t path_add_work(struct path_log *p, uint32_t before, int64_t time, int ra
     return made;
 }
 
+/* Asked for before the first node is made. */
+void path_keep_losers(struct path_log *p) { p->keeps_losers = true; }
+
+bool path_keeps_losers(const struct path_log *p) { return p->keeps_losers; }
+
+/* A loser has a lower number than what waits for it: slack.c goes through them once. */
+void path_lose(struct path_log *p, uint32_t loser, uint32_t joined, int64_t lag)
+{
+    if (!p->keeps_losers) return;
+    CHECK(loser < joined && joined < p->n);
+    if (p->nloser == p->loser_capacity)
+        p->loser = grown(p->loser, &p->loser_capacity, sizeof *p->loser);
+    /* lists of them are chained by numbers of 32 bits (slack.c) */
+    CHECK(p->nloser < UINT32_MAX);
+    p->loser[p->nloser++] = (struct path_loser){.loser = loser, .joined = joined, .lag = lag};
+}
+
+/* A node of its own, although it takes no time: what follows from `winner` elsewhere need not wait
+ * for the loser. */
+uint32_t path_join(struct path_log *p, uint32_t winner, uint32_t loser, int64_t lag,
+                   enum path_cause cause, int rank, int stage)
+{
+    if (!p->keeps_losers) return winner;
+    if (p->n == p->capacity) p->node = grown(p->node, &p->capacity, sizeof *p->node);
+    CHECK(p->n < UINT32_MAX && winner < p->n);
+    const struct path_node *b = &p->node[winner];
+    const struct path_node made = {.time = b->time,
+                                   .before = winner,
+                                   .rank = rank >= 0 ? rank : b->rank,
+                                   .resource = -1,
+                                   .cause = (uint8_t)cause,
+                                   .stage = stage >= 0 ? (uint8_t)stage : b->stage};
+    p->node[p->n] = made;
+    const uint32_t joined = (uint32_t)p->n++;
+    path_lose(p, loser, joined, lag);
+    return joined;
+}
+
+void path_owner(const struct path_log *p, uint32_t node, int *rank, int *stage)
+{
+    *rank = p->node[node].rank;
+    *stage = p->node[node].stage;
+}
+
 int64_t path_time(const struct path_log *p, uint32_t node) { return p->node[node].time; }
 
 int64_t path_nodes(const struct path_log *p) { return p->n; }
@@ -102,7 +133,8 @@ int64_t path_nodes(const struct path_log *p) { return p->n; }
 /* What is reserved, not what is used: it is what the process pays for. */
 int64_t path_bytes(const struct path_log *p)
 {
-    return p->capacity * (int64_t)sizeof *p->node + p->work_capacity * (int64_t)sizeof *p->work;
+    return p->capacity * (int64_t)sizeof *p->node + p->work_capacity * (int64_t)sizeof *p->work +
+           p->loser_capacity * (int64_t)sizeof *p->loser;
 }
 
 /* Back along what binds, which may lead through other ranks. */
@@ -112,15 +144,22 @@ uint32_t path_at(const struct path_log *p, uint32_t node, int64_t time)
     return node;
 }
 
+/* A node at which times meet takes none, and is no step. */
+static bool is_step(const struct path_log *p, uint32_t k)
+{
+    return p->node[k].time > p->node[p->node[k].before].time;
+}
+
 struct path_step *path_trace(const struct path_log *p, uint32_t node, int64_t *n, struct arena *a)
 {
     /* The chain is known from its end: count it, then fill the steps from the last to the first. */
     int64_t count = 0;
-    for (uint32_t k = node; k != 0; k = p->node[k].before) count++;
+    for (uint32_t k = node; k != 0; k = p->node[k].before) count += is_step(p, k);
     struct path_step *step = TAKE(a, count > 0 ? count : 1, struct path_step);
     *n = count;
     for (uint32_t k = node; k != 0; k = p->node[k].before) {
-        const struct node *x = &p->node[k];
+        if (!is_step(p, k)) continue;
+        const struct path_node *x = &p->node[k];
         struct path_step *s = &step[--count];
         /* of computing, `count` is where its work lies; of the rest how often it was paid */
         const bool counted = x->cause == PATH_COMPUTE && x->count >= 0;

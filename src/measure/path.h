@@ -9,6 +9,7 @@
 #ifndef MEASURE_PATH_H
 #define MEASURE_PATH_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/arena.h"
@@ -74,6 +75,23 @@ uint32_t path_add(struct path_log *p, uint32_t before, int64_t time, enum path_c
 /* path_add_work: as path_add, for computing whose operations are counted. */
 uint32_t path_add_work(struct path_log *p, uint32_t before, int64_t time, int rank, int stage,
                        const struct work *w);
+
+/* path_keep_losers: from now on the log also keeps what came in time and binds nobody, from which
+ * slack follows (slack.h): 48 bytes more for each message. path_keeps_losers: whether it does. */
+void path_keep_losers(struct path_log *p);
+bool path_keeps_losers(const struct path_log *p);
+
+/* path_join: two times meet: `winner` is the later one (or as late), and `loser` would bind if it
+ * were later by more than time(winner) - lag - time(loser). Returns the node from which all goes
+ * on that waits for both, with a cause that says whose it is: PATH_POLL of a rank; `winner`, where
+ * losers are not kept. path_lose: one more loser of
+ * `joined`; no effect where they are not kept. */
+uint32_t path_join(struct path_log *p, uint32_t winner, uint32_t loser, int64_t lag,
+                   enum path_cause cause, int rank, int stage);
+void path_lose(struct path_log *p, uint32_t loser, uint32_t joined, int64_t lag);
+
+/* path_owner: whose node it is. */
+void path_owner(const struct path_log *p, uint32_t node, int *rank, int *stage);
 
 /* path_time: of a node [ps]. path_nodes: how many there are. path_bytes: the graph's memory [B]. */
 int64_t path_time(const struct path_log *p, uint32_t node);

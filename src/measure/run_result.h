@@ -11,6 +11,7 @@
 
 #include "base/work.h"
 #include "measure/path.h"
+#include "measure/slack.h"
 
 enum run_status { RUN_OK, RUN_INVALID, RUN_DEADLOCK, RUN_FAILED };
 
@@ -125,6 +126,9 @@ struct run_result {
     /* the critical path in the order of time, in the run's arena, NULL unless recorded */
     struct path_step *path;
     int64_t path_nodes, path_bytes; /* of the graph that it was found in, and its memory [B] */
+    int nslack;
+    struct slack_row *slack; /* (nslack) in the run's arena, NULL unless recorded */
+    int64_t *rank_slack;     /* (nrank x nstage) likewise: slack_ranks */
     int nlink;
     struct link_load *link;    /* in the run's arena, NULL unless recorded */
 

@@ -8,6 +8,7 @@
 
 struct net_hold {
     uint32_t node; /* when it was taken */
+    bool taken;    /* ever */
     bool others;   /* since then it has served other users' messages */
     int64_t bytes; /* of the message that took it */
 };
@@ -50,15 +51,30 @@ static uint32_t until_free(const struct net *n, int resource, const struct net_h
                          : add(n, tail, flit, cause, resource, 1);
 }
 
+/* How long it was held, as until_free has it. */
+static sim_ps held(const struct net *n, int resource, const struct net_hold *h)
+{
+    const int64_t flits = net_flits(n, h->bytes);
+    return net_is_injection(n, resource)
+               ? net_port_busy(n, h->bytes, flits)
+               : net_rate_time(net_resource_rate(n, resource, h->bytes), flits);
+}
+
 uint32_t net_path_take(struct net *n, int resource, uint32_t own, sim_ps at, int64_t bytes)
 {
     struct net_hold *h = &n->hold[resource];
     uint32_t node = own;
-    if (at > path_time(n->path, own))
-        node = h->others ? path_add(n->path, own, at, PATH_BACKGROUND, -1, -1, resource, 1)
-                         : until_free(n, resource, h);
+    int rank, stage;
+    path_owner(n->path, own, &rank, &stage);
+    /* Of message and holder the later one binds; whom other users' messages held binds nobody. */
+    if (at > path_time(n->path, own) && h->others)
+        node = path_add(n->path, own, at, PATH_BACKGROUND, -1, -1, resource, 1);
+    else if (at > path_time(n->path, own))
+        node = path_join(n->path, until_free(n, resource, h), own, 0, PATH_CONTENTION, rank, stage);
+    else if (h->taken && !h->others)
+        node = path_join(n->path, own, h->node, held(n, resource, h), PATH_CONTENTION, rank, stage);
     CHECK(path_time(n->path, node) == at);
-    *h = (struct net_hold){.node = node, .bytes = bytes};
+    *h = (struct net_hold){.node = node, .taken = true, .bytes = bytes};
     return node;
 }
 

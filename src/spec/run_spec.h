@@ -20,7 +20,11 @@ struct record_spec {
     bool links;  /* per-link busy time and queueing */
     /* what binds: the critical path (mimdsim why). No setting: whoever asks for it says so */
     bool path;
+    bool slack; /* with the path: how much later everything else may be (measure/slack.h) */
     enum baseline_rule baselines;
+    /* how long computing is to last, NULL: as counted; borrowed. Alone of all it changes times, and
+     * only studies set it: what comes of it is never stored as the run's result */
+    const struct balance *balance;
 };
 
 /* What is computed although nothing asks for it (run's --keep-all): to show that leaving it out
@@ -52,6 +56,7 @@ struct level_choice {
     char at[64];             /* where it was measured: "n=P=128" */
 };
 
+struct balance;
 struct run_heartbeat;
 struct hosts;
 

@@ -540,6 +540,56 @@ CREATE TABLE IF NOT EXISTS ideal (
     makespan_ps INTEGER,               -- NULL: it cannot be run
     PRIMARY KEY (run_id, machine)
 ) STRICT, WITHOUT ROWID;
+-- How far a parameter may move until another path takes over.
+CREATE TABLE IF NOT EXISTS path_range (
+    run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    key    TEXT NOT NULL,              -- full name of the setting
+    factor REAL NOT NULL,              -- on the time behind it, at which the critical path becomes another one
+    PRIMARY KEY (run_id, key)
+) STRICT, WITHOUT ROWID;
+-- Links and ports that messages of the critical path pass or wait for; levels without links have the ports alone.
+CREATE TABLE IF NOT EXISTS path_resource (
+    run_id  INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    link    INTEGER NOT NULL,          -- number as in table link_load
+    name    TEXT NOT NULL,             -- between which routers, or whose port
+    time_ps INTEGER NOT NULL,          -- of the path
+    PRIMARY KEY (run_id, link)
+) STRICT, WITHOUT ROWID;
+-- How much later everything may be without lengthening the run: all steps of all ranks and messages.
+CREATE TABLE IF NOT EXISTS slack (
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    stage       TEXT NOT NULL,         -- name of the stage
+    cause       TEXT NOT NULL,         -- as in table critical_path
+    steps       INTEGER NOT NULL,      -- how many
+    time_ps     INTEGER NOT NULL,      -- together
+    critical_ps INTEGER NOT NULL,      -- of that without slack
+    near_ps     INTEGER NOT NULL,      -- with a slack of at most 5 % of the run, the former too
+    least_ps    INTEGER,               -- least slack above 0; NULL: there is none
+    PRIMARY KEY (run_id, stage, cause)
+) STRICT, WITHOUT ROWID;
+-- The slack of each rank: the least of what it computes, sends and receives.
+CREATE TABLE IF NOT EXISTS rank_slack (
+    run_id   INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    rank     INTEGER NOT NULL,         -- number of the rank, from 0
+    stage    TEXT NOT NULL,            -- where it has that
+    slack_ps INTEGER NOT NULL,         -- 0: it is on a critical path
+    PRIMARY KEY (run_id, rank)
+) STRICT, WITHOUT ROWID;
+-- Computing against communication by stage: rates of one processor in the mean over all, and the roofs above them.
+CREATE TABLE IF NOT EXISTS roofline (
+    run_id     INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    ordinal    INTEGER NOT NULL,       -- 0 is the whole run, the stages follow
+    stage      TEXT NOT NULL,          -- name of the stage, or 'whole run'
+    flops      REAL NOT NULL,          -- additions, subtractions and multiplications, all ranks
+    messages   REAL NOT NULL,          -- sent, all ranks
+    sent_bytes REAL NOT NULL,          -- all ranks
+    attained   REAL NOT NULL,          -- flop/s with all waiting
+    computing  REAL,                   -- flop/s while it computes; NULL: that takes no time, so in the next two
+    bandwidth  REAL,                   -- flop/s if its port sent all the time
+    software   REAL,                   -- flop/s if it handled messages all the time
+    lowest     TEXT NOT NULL,          -- of the three: computing, bandwidth, message software
+    PRIMARY KEY (run_id, ordinal)
+) STRICT, WITHOUT ROWID;
 
 -- A run with the uncertain parameters of its machine drawn anew (mimdsim run --uncertainty N).
 CREATE TABLE IF NOT EXISTS uncertainty_sample (

@@ -11,6 +11,7 @@
 #include "base/err.h"
 #include "measure/run_result.h"
 #include "spec/run_spec.h"
+#include "study/roofline.h"
 
 enum { WHY_RANKS = 10, WHY_MOST_PARAMETERS = 32, WHY_MOST_LIMITS = 12 };
 
@@ -27,6 +28,12 @@ struct why_rank {
     int64_t time_ps; /* of the path on that rank or with its message */
 };
 
+/* A link or port that messages of the path pass or wait for. */
+struct why_resource {
+    int resource;    /* number in run.link, which says between which routers it is */
+    int64_t time_ps; /* of the path: hops to it, bytes and gaps at it */
+};
+
 /* One parameter of the machine. Its contribution is the part of the path that is proportional to it
  * (times, cycles) or to its inverse (rates), so d ln T / d ln value is the share, negative for
  * rates. */
@@ -41,6 +48,8 @@ struct why_parameter {
         tolerance;  /* factor on the time that it stands for with which the run takes 5 % longer,
                        confirmed by  simulation; 0: not within a factor of 1000, or not asked for */
     bool same_path; /* up to there the path pays it as often: nothing else takes over */
+    double range;   /* factor at which another path takes over, simulated; 0: not before
+                       `tolerance`, or not found */
 };
 
 /* An idealised machine. */
@@ -57,6 +66,10 @@ struct why {
     int nrank;
     struct why_rank rank[WHY_RANKS]; /* the longest first */
     int ranks;                       /* on the path, all of them */
+    int nresource;
+    struct why_resource resource[WHY_RANKS]; /* the longest first; none at levels without them */
+    int nroof;
+    struct roofline_row *roof; /* (nroof) computing against communication */
     int64_t messages;                /* that the path follows from one rank to another one */
     int nparameter;
     struct why_parameter
@@ -65,7 +78,7 @@ struct why {
     struct why_limit limit[WHY_MOST_LIMITS];
 };
 
-enum { WHY_TOLERANCES = 1, WHY_LIMITS = 2 };
+enum { WHY_TOLERANCES = 1, WHY_LIMITS = 2, WHY_SLACK = 4, WHY_ALL = 7 };
 
 /* why_study: run `spec` with its path, then find what `ask` (WHY_*) says.
  *
@@ -79,6 +92,10 @@ bool why_study(const struct run_spec *spec, unsigned ask, int workers, bool quie
 /* why_contributions: the parameters of `out` from the path of out->run, which ran on machine `m`.
  */
 void why_contributions(const struct machine_spec *m, struct why *out);
+
+/* why_contribution: the part of the path of `r`, a run of `spec`, that is proportional to parameter
+ * `key` [ps]; 0: none. */
+int64_t why_contribution(const struct run_spec *spec, const struct run_result *r, const char *key);
 
 /* why_scale: the time that parameter `key` (machine....) stands for becomes `factor` times as long;
  * false when there is no such parameter. */

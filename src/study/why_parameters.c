@@ -260,3 +260,12 @@ void why_contributions(const struct machine_spec *m, struct why *out)
     }
     qsort(out->parameter, (size_t)out->nparameter, sizeof out->parameter[0], longer_first);
 }
+
+int64_t why_contribution(const struct run_spec *spec, const struct run_result *r, const char *key)
+{
+    struct why w = {.run = *r};
+    why_contributions(&spec->machine, &w);
+    for (int i = 0; i < w.nparameter; i++)
+        if (strcmp(w.parameter[i].key, key) == 0) return w.parameter[i].time_ps;
+    return 0;
+}

@@ -28,5 +28,14 @@ void vp_path_record_work(struct vp *v, sim_ps begin, const struct work *w)
  * binds nothing. */
 void vp_path_record_join(struct vp *v, uint32_t node)
 {
-    if (path_time(v->world->path, node) > v->clock) v->path = node;
+    struct path_log *p = v->world->path;
+    const bool message = path_time(p, node) > v->clock;
+    /* Which of the two would have to be later, to bind, is asked for by few. */
+    if (!path_keeps_losers(p)) {
+        if (message) v->path = node;
+        return;
+    }
+    const uint32_t own = vp_path_until(v, v->clock);
+    v->path = message ? path_join(p, node, own, 0, PATH_POLL, v->comm.rank, v->stage)
+                      : path_join(p, own, node, 0, PATH_POLL, v->comm.rank, v->stage);
 }

@@ -29,20 +29,28 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
     travel(m, v, m->to, 0, v->clock);
 }
 
+/* The request binds unless the receive was posted after it had arrived. */
+static uint32_t bind_path(const struct message *m, const struct comm_request *r, sim_ps now,
+                          sim_ps ready)
+{
+    struct vp *v = m->to;
+    struct path_log *p = v->world->path;
+    const bool posted = now > m->net.arrival;
+    const uint32_t winner = posted ? vp_path_until(v, now) : m->net.path;
+    const uint32_t loser = posted ? m->net.path : r->path;
+    return path_add(p, path_join(p, winner, loser, 0, PATH_POLL, v->comm.rank, v->stage), ready,
+                    PATH_RENDEZVOUS, v->comm.rank, v->stage, -1, m->bytes);
+}
+
 /* The receive is posted and the request is there: clear to send, after the software's time. What
  * contention has cost so far is kept in `delay`. */
 void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
 {
-    (void)r;
     struct vp *v = m->to;
-    struct path_log *p = v->world->path;
     const sim_ps ready = now + message_cost(&v->world->software, m->bytes)->rendezvous;
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_CLEAR_TO_SEND;
-    /* The request binds unless the receive was posted after it had arrived. */
-    if (p)
-        m->net.path = path_add(p, now > m->net.arrival ? vp_path_until(v, now) : m->net.path, ready,
-                               PATH_RENDEZVOUS, v->comm.rank, v->stage, -1, m->bytes);
+    if (v->world->path) m->net.path = bind_path(m, r, now, ready);
     travel(m, v, m->from, 0, ready);
 }
 

@@ -14,10 +14,15 @@ static sim_ps service_time(const struct world *w, int64_t bytes)
 static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
 {
     struct world *w = v->world;
+    const int rank = v->comm.rank, stage = v->stage;
+    const uint32_t own = vp_path_until(v, now), other = w->server_path;
     v->path = v->server_start > now
-                  ? path_add(w->path, w->server_path, v->server_start, PATH_SERVER, w->served_rank,
-                             w->served_stage, -1, w->server_bytes)
-                  : vp_path_until(v, now);
+                  ? path_join(w->path,
+                              path_add(w->path, other, v->server_start, PATH_SERVER, w->served_rank,
+                                       w->served_stage, -1, w->server_bytes),
+                              own, 0, PATH_SERVER, rank, stage)
+                  : path_join(w->path, own, other, service_time(w, w->server_bytes), PATH_SERVER,
+                              rank, stage);
     w->server_path = v->path;
     w->server_bytes = bytes;
     w->served_rank = v->comm.rank;

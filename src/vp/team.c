@@ -282,6 +282,7 @@ const char *world_alone(const struct machine_spec *m, const struct world_load *l
         return "large messages shake hands";
     if (m->noise.background_load > 0) return "other jobs' traffic follows time";
     if (record->spans) return "a timeline is recorded";
+    if (record->balance) return "computing follows a table of shares";
     return record->path ? "a critical path is recorded" : NULL;
 }
 

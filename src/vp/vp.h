@@ -95,6 +95,8 @@ struct world {
     void (*share_barrier)(struct vp *v);
 
     struct path_log *path; /* what binds (path.h), NULL unless recorded; owned */
+    /* what was computed so far, as record->balance has it; NULL: that does not act (balance.h) */
+    int64_t *balanced;
     uint32_t barrier_path; /* of barrier_latest, then of barrier_release */
     int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;

@@ -11,6 +11,7 @@
 #include "vp/explain.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
+#include "vp/balance.h"
 #include "vp/path.h"
 #include "vp/vp.h"
 
@@ -125,6 +126,8 @@ static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const voi
  * here. */
 static void post(struct vp *v, struct comm_request *r)
 {
+    /* Where a hand-shake waits for the receive to be posted, this is what it waits for. */
+    if (v->world->path && path_keeps_losers(v->world->path)) r->path = vp_path_until(v, v->clock);
     if (v->matching) matching_post(v, r);
     else r->posted_ps = v->clock, mailbox_post(v, r);
 }
@@ -231,6 +234,17 @@ static void vp_wait(struct comm *c, struct comm_request *r)
     finish_receive(v, r);
 }
 
+/* From the last rank's entry to the release, which is a node of its own even where the machine's
+ * barrier takes no time: other ranks' entries lead to it, too. */
+static void release_path(struct vp *v)
+{
+    struct world *w = v->world;
+    const uint32_t last = path_at(w->path, w->barrier_path, w->barrier_latest);
+    const uint32_t free =
+        path_add(w->path, last, w->barrier_release, PATH_BARRIER, -1, v->stage, -1, 1);
+    w->barrier_path = path_join(w->path, free, last, w->software.barrier, PATH_BARRIER, -1, -1);
+}
+
 /* The last rank to enter lets everybody go at the same time. The release time stays valid
  * until the next barrier is complete, for which every rank must have left this one. O(P)
  * for each barrier, and no messages: a network for barriers alone, such as the T3E's,
@@ -238,6 +252,7 @@ static void vp_wait(struct comm *c, struct comm_request *r)
 static void enter_hardware_barrier(struct vp *v)
 {
     struct world *w = v->world;
+    if (w->path && path_keeps_losers(w->path)) v->path = vp_path_until(v, v->clock);
     if (v->clock > w->barrier_latest) {
         w->barrier_latest = v->clock;
         w->barrier_path = v->path;
@@ -246,10 +261,7 @@ static void enter_hardware_barrier(struct vp *v)
         vp_block(v, WAITING_BARRIER, NULL);
     } else {
         w->barrier_release = w->barrier_latest + w->software.barrier;
-        if (w->path)
-            w->barrier_path =
-                path_add(w->path, path_at(w->path, w->barrier_path, w->barrier_latest),
-                         w->barrier_release, PATH_BARRIER, -1, v->stage, -1, 1);
+        if (w->path) release_path(v);
         w->barrier_count = 0;
         w->barrier_latest = 0;
         for (int i = 0; i < w->nrank; i++)
@@ -262,6 +274,7 @@ static void hardware_barrier(struct vp *v)
     const struct world *w = v->world;
     if (w->share_barrier) w->share_barrier(v);
     else enter_hardware_barrier(v);
+    if (w->path) path_lose(w->path, v->path, w->barrier_path, w->software.barrier);
     vp_path_join(v, w->barrier_path);
     vp_wait_until(v, w->barrier_release, w->barrier_release);
 }
@@ -289,6 +302,7 @@ static inline void compute(struct vp *v, sim_ps cost, const struct work *work)
         double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->noise);
         cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
+    if (__builtin_expect(w->balanced != NULL, 0)) cost = vp_balance_cost(v, cost);
     vp_advance(v, v->clock + cost);
     if (w->path && work) vp_path_work(v, begin, work);
     else vp_path(v, PATH_COMPUTE, begin, -1);
@@ -321,6 +335,7 @@ static void vp_stage(struct comm *c, int stage)
     if (stage < 0 || stage >= v->world->nstage)
         vp_misuse(v, "stage %d: there are 0 .. %d", stage, v->world->nstage - 1);
     v->stage = stage;
+    if (__builtin_expect(v->world->balanced != NULL, 0)) compute(v, vp_balance_entry(v), NULL);
 }
 
 static int64_t vp_now(struct comm *c) { return ((struct vp *)c)->clock; }

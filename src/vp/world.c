@@ -156,6 +156,21 @@ static void measure_stacks(struct world *w)
     stack_text(w, rank, r->text, sizeof r->text);
 }
 
+/* How much later everything else may be: from the ends of all ranks back. */
+static void trace_slack(struct world *w)
+{
+    struct run_result *r = w->result;
+    uint32_t *end = TAKE(w->scratch, w->nrank, uint32_t);
+    for (int i = 0; i < w->nrank; i++) {
+        w->vp[i].clock = w->vp[i].finish;
+        end[i] = vp_path_until(&w->vp[i], w->vp[i].finish);
+    }
+    int64_t *slack = slack_of(w->path, w->nrank, end);
+    r->slack = slack_rows(w->path, slack, r->makespan_ps, &r->nslack, w->arena);
+    r->rank_slack = slack_ranks(w->path, slack, w->nrank, r->nstage, w->arena);
+    free(slack);
+}
+
 /* The critical path ends with the rank that ends last, the first of several. Any of
  * several that end together would do; the first makes it the same in each run. */
 static void trace_path(struct world *w)
@@ -168,6 +183,7 @@ static void trace_path(struct world *w)
     v->clock = v->finish;
     vp_path(v, PATH_POLL, v->finish, 0);
     r->path = path_trace(w->path, v->path, &r->npath, w->arena);
+    if (w->record->slack) trace_slack(w);
     r->path_nodes = path_nodes(w->path);
     r->path_bytes = path_bytes(w->path);
 }
@@ -218,6 +234,9 @@ static bool build(struct world *w, struct err *e)
     net_foresee(w->net, foresee);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
+    if (w->record->path && w->record->slack) path_keep_losers(w->path);
+    if (w->record->balance)
+        w->balanced = TAKE(w->scratch, size_product(w->nrank, w->nstage + 1), int64_t);
     w->fibers = fiber_pool_create(w->nrank, stack_bytes(w), e);
     return w->fibers != NULL;
 }

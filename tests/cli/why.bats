@@ -11,13 +11,48 @@ load helper
     stderr_is_empty
     # The path is the run: its parts add up to the makespan, to the picosecond.
     sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
-    sql_is own.db 'SELECT count(*) FROM ideal' 5
+    sql_is own.db 'SELECT count(*) FROM ideal' 6
     # Nothing idealised is slower, and what is paid 5 % more by the path alone lasts at least so long.
-    sql_is own.db 'SELECT count(*) FROM ideal i JOIN run r ON r.id = i.run_id WHERE i.makespan_ps > r.makespan_ps' 0
+    sql_is own.db 'SELECT count(*) FROM ideal i JOIN run r ON r.id = i.run_id WHERE i.makespan_ps > r.makespan_ps AND i.machine <> '\''perfect balance'\''' 0
+    sql_is own.db "SELECT count(*) FROM ideal WHERE machine = 'perfect balance' AND makespan_ps > 0" 1
     sql_is own.db "SELECT count(*) > 3 FROM sensitivity WHERE factor_5_percent > 1" 1
     # A second time nothing is doubled.
     works mimdsim why speedup-t3e --set n=16 --set level=loggp -o own.db --quiet
     sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
+}
+
+@test "why tells how much later the rest may be, where the path passes, and computing against communication" {
+    works mimdsim why speedup-t3e --set n=16 --set level=link -o own.db --quiet
+    stdout_says 'Of the idealised machines zero overhead helps most'
+    stdout_says 'Before the run is 5 % longer, software'
+    stdout_says 'Slack of the ranks'
+    stdout_says 'Links and ports that the path passes'
+    stdout_says 'Computing against communication'
+    # Every rank is there; at least one is critical, and none has more than the run.
+    sql_is own.db 'SELECT count(*) FROM rank_slack' 16
+    sql_is own.db 'SELECT min(slack_ps) FROM rank_slack' 0
+    sql_is own.db 'SELECT count(*) FROM rank_slack s JOIN run r ON r.id = s.run_id WHERE slack_ps > makespan_ps' 0
+    # What is critical is at least the path, and computing of the table is that of the run.
+    sql_is own.db "SELECT sum(critical_ps) >= (SELECT makespan_ps FROM run) FROM slack" 1
+    sql_is own.db "SELECT sum(time_ps) = (SELECT sum(compute_sum_ps) FROM stage) FROM slack WHERE cause = 'computing'" 1
+    sql_is own.db 'SELECT count(*) FROM slack WHERE critical_ps > near_ps OR near_ps > time_ps' 0
+    sql_is own.db 'SELECT count(*) FROM roofline WHERE attained > computing * 1.000001' 0
+    sql_is own.db "SELECT flops = (SELECT sum(flops) FROM stage) FROM roofline WHERE ordinal = 0" 1
+    sql_is own.db 'SELECT count(*) > 0 FROM path_resource' 1
+    works mimdsim why speedup-t3e --set n=16 --set level=link -o own.db --json
+    [ "$(sqlite3 :memory: "SELECT json_array_length('$output', '\$.rank_slack_ps'), json_array_length('$output', '\$.roofline') > 3")" = "16|1" ]
+    # A second time nothing is doubled, and --brief says nothing of it.
+    sql_is own.db 'SELECT count(*) FROM rank_slack' 16
+    works mimdsim why own.db 1 --brief
+    ! grep -q 'Slack' <<<"$output"
+}
+
+@test "why calls a run what it is called" {
+    works mimdsim why speedup-t3e --set n=8 --set machine.network.hop_latency="60 us" -o own.db --quiet
+    stdout_says 'dynamics on t3e-300, hop_latency 60 us, n = 8'
+    works mimdsim run speedup-t3e --set n=8 --name 'my machine' -o named.db --quiet
+    works mimdsim why named.db 1 --brief
+    stdout_says 'dynamics on my machine, n = 8'
 }
 
 @test "the factor that makes a run 5 % longer does so" {
@@ -46,6 +81,11 @@ load helper
     works mimdsim plot own.db why
     [ -s figures/why-1.png ] && [ -s figures/why-1.svg ]
     grep -q 'receive overhead' figures/why-1.csv
+    grep -q 'perfect balance' figures/why-1.csv
+    works mimdsim plot own.db slack
+    works mimdsim plot own.db roofline
+    [ -s figures/slack-1.png ] && [ -s figures/roofline-1.svg ]
+    grep -q 'NE\[1\]' figures/roofline-1.csv
 }
 
 @test "what cannot be explained is refused, and nothing is left behind" {
@@ -72,5 +112,5 @@ load helper
     sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
     sql_is own.db "SELECT i.makespan_ps < r.makespan_ps - (SELECT sum(time_ps) FROM critical_path WHERE cause = 'computing') / 2
         FROM ideal i, run r WHERE i.machine LIKE 'infinitely fast%'" 1
-    sql_is own.db 'SELECT count(makespan_ps) FROM ideal' 5
+    sql_is own.db 'SELECT count(makespan_ps) FROM ideal' 6
 }
