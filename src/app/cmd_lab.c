@@ -1,11 +1,14 @@
 /* cmd_lab.c - mimdsim lab: lessons to work through; checking attempts. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/flag.h"
+#include "app/lab_report.h"
 #include "app/verb.h"
 #include "lab/lab.h"
 #include "measure/column.h"
+#include "report/csv.h"
 
 static const char doc[] =
     "Without an argument: list the lessons. With one: copy it into a folder of your own, to work "
@@ -21,7 +24,11 @@ static const char doc[] =
     "your predictions, what your program did, and the closed form, as whole numbers. The exit "
     "status is 1 unless all is right.\n\n"
     "mimdsim lab draw [FOLDER]: runs the program and draws the lesson's picture into FOLDER.\n\n"
-    "mimdsim lab grade FOLDER...: one line for each attempt.";
+    "mimdsim lab report [FOLDER]: makes FOLDER/report.html, one page to hand in: predictions and "
+    "verdicts, a timeline to explore, what the run would take on other machines, the program, and "
+    "what you wrote in notes.md. The exit status is that of check.\n\n"
+    "mimdsim lab grade FOLDER..., or --grade FOLDER...: one line for each attempt; with --csv for "
+    "spreadsheets.";
 
 /* --- the list --- */
 
@@ -124,41 +131,76 @@ static void print_result(const struct lab_result *r)
     printf("\n%d of %d right\n", r->right, r->nanswer);
 }
 
-/* All folders, one after the other; one that cannot be checked does not keep the others from it. */
-static int check_all(const struct common *c, bool brief)
+/* One cell of a teacher's spreadsheet. What begins like a formula would be one there, and a name is
+ * a student's text: an apostrophe makes it text again. */
+static void csv_text(const char *s, bool last)
 {
-    const char *const here[] = {"."};
-    const int n = c->narg > 1 ? c->narg - 1 : 1;
-    const char *const *folder = c->narg > 1 ? &c->arg[1] : here;
+    struct text t = {0};
+    text_add(&t, "%s%s", s[0] != '\0' && strchr("=+-@", s[0]) != NULL ? "'" : "", s);
+    csv_cell(stdout, t.s, last);
+    text_free(&t);
+}
+
+/* The same columns as the table of grade. */
+static void csv_result(const struct lab_result *r)
+{
+    char number[2][16];
+    snprintf(number[0], sizeof number[0], "%d", r->right);
+    snprintf(number[1], sizeof number[1], "%d", r->nanswer);
+    csv_text(r->folder, false);
+    csv_text(r->lab, false);
+    csv_text(r->student, false);
+    csv_cell(stdout, number[0], false);
+    csv_cell(stdout, number[1], false);
+    csv_text(r->program, true);
+}
+
+/* How attempts are shown. */
+enum form { FORM_WHOLE, FORM_TABLE, FORM_CSV, FORM_JSON };
+
+/* All folders, one after the other; one that cannot be checked does not keep the others from it. */
+static int check_all(int n, const char *const *folder, enum form form)
+{
     int status = 0;
     struct json j = json_make(stdout);
     /* One document for all attempts, or a table, or one attempt after the other. */
-    if (c->json) json_array(&j);
-    else if (brief) columns_title(&result_columns, stdout);
+    if (form == FORM_JSON) json_array(&j);
+    else if (form == FORM_TABLE) columns_title(&result_columns, stdout);
+    else if (form == FORM_CSV) fputs("folder,lab,student,right,questions,program\r\n", stdout);
     for (int i = 0; i < n; i++) {
         struct arena *a = arena_create();
         struct err e;
         struct lab_result r;
         err_clear(&e);
-        /* The worst that was found is the exit status; a wrong answer is less than a broken
-         * file. */
+        /* The worst that was found is the exit status; a wrong answer is less than a broken file.
+         */
         if (!lab_check(&r, folder[i], a, &e)) {
-            if (c->json) common_error_json(&j, folder[i], &e);
+            if (form == FORM_JSON) common_error_json(&j, folder[i], &e);
             err_print(&e);
-            if (status == 0) status = err_exit_status(e.kind);
+            if (status < ERR_USAGE_STATUS) status = err_exit_status(e.kind);
         } else {
-            if (c->json) columns_json(&result_columns, &r, &j);
-            else if (brief) columns_print(&result_columns, &r, stdout);
+            if (form == FORM_JSON) columns_json(&result_columns, &r, &j);
+            else if (form == FORM_CSV) csv_result(&r);
+            else if (form == FORM_TABLE) columns_print(&result_columns, &r, stdout);
             else print_result(&r);
             if (status == 0 && r.right < r.nanswer) status = 1;
         }
         arena_destroy(a);
     }
-    if (c->json) {
+    if (form == FORM_JSON) {
         json_end(&j);
         json_finish(&j);
     }
     return status;
+}
+
+/* `check` and `grade`, as a word before the folders or as an option. */
+static int check_folders(const struct common *c, bool word, bool table, bool csv)
+{
+    static const char *const here[] = {"."};
+    const int n = word ? c->narg - 1 : c->narg;
+    const enum form form = c->json ? FORM_JSON : !table ? FORM_WHOLE : csv ? FORM_CSV : FORM_TABLE;
+    return n > 0 ? check_all(n, word ? &c->arg[1] : c->arg, form) : check_all(1, here, form);
 }
 
 /* The picture of one attempt, and where it is. */
@@ -173,6 +215,21 @@ static int draw(const struct common *c, struct arena *a)
         return common_fail(c, &e);
     if (status == 0 && !c->quiet) printf("%s.png\n", file);
     return status;
+}
+
+/* The page of one attempt, and where it is. */
+static int report(const struct common *c, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    /* The status is that of check, so that a script may hand in what is right. */
+    const char *path;
+    bool right;
+    if (c->narg > 2) err_set(&e, ERR_USAGE, "lab report: expected at most one folder");
+    if (e.kind != ERR_NONE || !lab_report(c, c->narg > 1 ? c->arg[1] : ".", a, &path, &right, &e))
+        return common_fail(c, &e);
+    if (!c->quiet) printf("%s\n", path);
+    return right ? 0 : err_exit_status(ERR_CHECK);
 }
 
 /* A name is written into files of the attempt: one line, no quotes. */
@@ -193,19 +250,23 @@ int cmd_lab(int argc, char **argv)
     err_clear(&e);
     /* The option of this verb alone is taken before argp reads the rest. */
     const char *variant = take_value(&argc, argv, "--variant");
-    const bool mpi = take_flag(&argc, argv, "--mpi");
-    common_parse(&c, argc, argv, 0,
-                 "[NAME [FOLDER] | check [FOLDER...] | draw [FOLDER] | grade FOLDER...]", doc, 0,
-                 64);
+    const bool mpi = take_flag(&argc, argv, "--mpi"), csv = take_flag(&argc, argv, "--csv");
+    const bool grade = take_flag(&argc, argv, "--grade");
+    common_parse(
+        &c, argc, argv, 0,
+        "[NAME [FOLDER] | check [FOLDER...] | draw [FOLDER] | report [FOLDER] | grade FOLDER...]",
+        doc, 0, 64);
     if (variant != NULL && !is_student(variant, &e)) return common_fail(&c, &e);
-    if (c.narg > 0 && strcmp(c.arg[0], "check") == 0) return check_all(&c, false);
-    if (c.narg > 0 && strcmp(c.arg[0], "grade") == 0) return check_all(&c, true);
+    if (grade) return check_folders(&c, false, true, csv);
+    if (c.narg > 0 && strcmp(c.arg[0], "check") == 0) return check_folders(&c, true, false, csv);
+    if (c.narg > 0 && strcmp(c.arg[0], "grade") == 0) return check_folders(&c, true, true, csv);
     /* Everything else is the name of a lesson. */
     struct arena *a = arena_create();
-    const int status = c.narg == 0 ? list_labs(&c, a)
-                       : strcmp(c.arg[0], "draw") == 0
-                           ? draw(&c, a)
-                           : copy_lab(&c, variant ? variant : "", mpi, a);
+    int status;
+    if (c.narg == 0) status = list_labs(&c, a);
+    else if (strcmp(c.arg[0], "draw") == 0) status = draw(&c, a);
+    else if (strcmp(c.arg[0], "report") == 0) status = report(&c, a);
+    else status = copy_lab(&c, variant != NULL ? variant : "", mpi, a);
     arena_destroy(a);
     return status;
 }

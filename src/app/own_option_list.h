@@ -52,6 +52,8 @@
       "of a database: make K of its runs (or all) again and compare every number")                 \
     X("check", "seed", "S", "which runs --again takes (default 1)")                                \
     X("lab", "variant", "STUDENT", "choose the numbers of the lesson by this name")                \
+    X("lab", "grade", NULL, "one line for each of the folders, for teachers")                      \
+    X("lab", "csv", NULL, "with grade: with commas, for spreadsheets")                             \
     X("lab", "mpi", NULL, "the program of the lesson is an MPI program")                           \
     X("scenarios", "keys", NULL, "all keys of scenarios, machine files and --set")                 \
     X("query", "upgrade", NULL, "make the database one of this version")                           \

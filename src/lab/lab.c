@@ -36,7 +36,7 @@ static const char *marked(const char *s, size_t *n)
     return close != NULL ? s + 1 : NULL;
 }
 
-/* Words are not ended by NUL: they stand in the template. */
+/* Whether a marked word is `wanted`. Words are not ended by NUL: they stand in the template. */
 static bool is_word(const char *word, size_t n, const char *wanted)
 {
     return strlen(wanted) == n && memcmp(word, wanted, n) == 0;
@@ -204,6 +204,54 @@ static bool take_picture(struct lab *l, const struct node *root, const char *pat
     return true;
 }
 
+/* The values of a slider by size. They are numbers with one unit, which is written once in the
+ * lesson and stands behind each of them here. */
+static int by_size(const void *a, const void *b)
+{
+    const double x = atof(*(const char *const *)a), y = atof(*(const char *const *)b);
+    return (x > y) - (x < y);
+}
+
+/* One slider: the values of the lesson and the student's own one, each once, in their order. The
+ * own one is the number of the slider's name, or stands there as `own`. */
+static bool take_slider(struct lab *l, const struct node *n, const char *path, struct arena *a,
+                        struct err *e)
+{
+    const struct node *values = document_find(n, "values");
+    const char *own = document_text(n, "own"), *unit = document_text(n, "unit");
+    const char *number[LAB_VALUES];
+    /* Students differ in their numbers, so the scale of a slider does as well. */
+    if (own[0] == '\0') own = value_of(l, n->key, strlen(n->key));
+    if (l->nslider == LAB_SLIDERS || values == NULL || values->count >= LAB_VALUES || own == NULL)
+        return err_set_at(e, ERR_DATA, path, n->line,
+                          "slider '%s': expected own or a number of that name, fewer than %d "
+                          "values, and at most %d sliders",
+                          n->key, LAB_VALUES, LAB_SLIDERS);
+    struct lab_slider *s = &l->slider[l->nslider++];
+    *s = (struct lab_slider){.text = document_text(n, "text"), .key = document_text(n, "key")};
+    number[s->nvalue++] = own;
+    for (const struct node *v = values->child; v != NULL; v = v->next)
+        if (atof(v->text) != atof(own)) number[s->nvalue++] = v->text;
+    /* From small to large, whatever the student's own number is. */
+    qsort(number, (size_t)s->nvalue, sizeof *number, by_size);
+    for (int i = 0; i < s->nvalue; i++) {
+        struct text t = {0};
+        text_add(&t, "%s%s%s", number[i], unit[0] ? " " : "", unit);
+        s->value[i] = arena_text(a, t.s);
+        text_free(&t);
+        if (number[i] == own) s->own = i;
+    }
+    return true;
+}
+
+/* At most 8^4; lessons keep it below 200, as each place is a run. */
+int lab_points(const struct lab *l)
+{
+    int n = 1;
+    for (int i = 0; i < l->nslider; i++) n *= l->slider[i].nvalue;
+    return n;
+}
+
 /* The nearest lab, for a name that is none: students type names, and folders are not listed for
  * them. */
 static bool no_such_lab(const char *name, struct arena *a, struct err *e)
@@ -249,13 +297,17 @@ bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, st
         if (!take_number(l, n, file, e)) return false;
     for (const struct node *q = questions->child; q != NULL; q = q->next)
         if (!take_question(l, q, file, a, e)) return false;
+    const struct node *sliders = document_find(root, "sliders");
+    for (const struct node *s = sliders != NULL ? sliders->child : NULL; s != NULL; s = s->next)
+        if (!take_slider(l, s, file, a, e)) return false;
     return take_picture(l, root, file, a, e);
 }
 
 /* --- the copy --- */
 
-/* answers.yaml: a place for each prediction, under its question. It also tells whose numbers these
- * are and which program it is about, so that a folder can be moved, renamed and handed in. */
+/* The file in which the student works first, answers.yaml: a place for each prediction, under its
+ * question. It also tells whose numbers these are and which program it is about, so that a folder
+ * can be moved, renamed and handed in. */
 static void write_answers(const struct lab *l, struct text *out)
 {
     text_add(out,

@@ -19,7 +19,7 @@
 #include "base/err.h"
 #include "base/text.h"
 
-enum { LAB_NUMBERS = 16, LAB_QUESTIONS = 16, LAB_SETS = 4 };
+enum { LAB_NUMBERS = 16, LAB_QUESTIONS = 16, LAB_SETS = 4, LAB_SLIDERS = 4, LAB_VALUES = 8 };
 
 /* What the student's name chose. */
 struct lab_number {
@@ -41,6 +41,13 @@ struct lab_picture {
     const char *set[LAB_SETS]; /* "ranks=2,4,8" */
 };
 
+/* A setting that the report varies: which values, and the one that the student's scenario has. */
+struct lab_slider {
+    const char *text, *key;
+    int nvalue, own;
+    const char *value[LAB_VALUES]; /* with their unit, from small to large */
+};
+
 struct lab {
     const char *name, *folder, *title, *goal, *minutes, *student;
     const char *program; /* the file that the student completes */
@@ -49,6 +56,8 @@ struct lab {
     struct lab_number number[LAB_NUMBERS];
     struct lab_question question[LAB_QUESTIONS];
     struct lab_picture picture;
+    int nslider;
+    struct lab_slider slider[LAB_SLIDERS];
 };
 
 /* One question of an attempt that was checked. */
@@ -82,6 +91,9 @@ bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, st
 /* lab_fill: `template` with the lab's numbers in the place of every @NUMBER@, and without the lines
  * of the other kind of program, appended to *out. */
 void lab_fill(const struct lab *l, const char *template, struct text *out);
+
+/* lab_points: how many places the sliders have together. */
+int lab_points(const struct lab *l);
 
 /* lab_copy: the student's folder `folder`, which must not exist, with every file filled in and an
  * empty answers.yaml. Returns false with ERR_CREATE or ERR_IO; then nothing of it is left. */

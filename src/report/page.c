@@ -52,7 +52,7 @@ static void put_script_source(FILE *html, const struct text *script)
 /* HTML that is complete in itself: no style sheet, no script, no font from elsewhere. Texts of a
  * database are escaped, pictures are read and written again; the policy is the second lock: the
  * browser fetches nothing and runs no script but ours. */
-static void put_head(FILE *html, const struct text *style, const struct text *script)
+void page_head(FILE *html, const struct text *style, const struct text *script)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -85,7 +85,7 @@ bool page_open(struct page *p, const char *title, struct err *e)
     p->md = text_stream(&p->text_md);
     p->html = text_stream(&p->text_html);
     if (ok) {
-        put_head(p->html, &style, &p->script);
+        page_head(p->html, &style, &p->script);
         fputs("<title>", p->html);
         markup_escape(p->html, title);
         fputs("</title>\n</head>\n<body>\n", p->html);

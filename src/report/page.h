@@ -11,12 +11,12 @@
 #include "store/store.h"
 
 struct page {
-    FILE *md, *html;     /* into the texts below */
-    const char *figures; /* folder of the pictures */
-    const char *data_dir; /* holds plots/ */
-    int nfigure;         /* written: each has identifiers of its own */
-    struct text script;  /* of the HTML, written at its end */
-    int columns;         /* of the table being written */
+    FILE *md, *html;                /* into the texts below */
+    const char *figures;            /* folder of the pictures */
+    const char *data_dir;           /* holds plots/ */
+    int nfigure;                    /* written: each has identifiers of its own */
+    struct text script;             /* of the HTML, written at its end */
+    int columns;                    /* of the table being written */
     struct text text_md, text_html; /* all but the list of contents */
     bool has_contents;
     size_t list_at_md, list_at_html; /* where the list goes */
@@ -33,6 +33,10 @@ bool page_open(struct page *p, const char *title, struct err *e);
 /* page_close: end it: folder/NAME.md and folder/NAME.html are there, whole, in place of older ones,
  * when `keep`; else nothing is written. Returns false with ERR_CREATE or ERR_IO. */
 bool page_close(struct page *p, const char *folder, const char *name, bool keep, struct err *e);
+
+/* page_head: the beginning of an HTML file of ours, up to its title: nothing is fetched from
+ * elsewhere, and of scripts only `script` runs. */
+void page_head(FILE *html, const struct text *style, const struct text *script);
 
 /* page_contents: put a section "Contents" here, with links to all headings of level 2 that follow.
  * Once a page. */

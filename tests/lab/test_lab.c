@@ -63,7 +63,10 @@ static const char toy[] = "schema_version: 1\n"
                           "  x: P\n"
                           "  y: makespan_s\n"
                           "  by: tree\n"
-                          "  by-mpi: arguments\n";
+                          "  by-mpi: arguments\n"
+                          "sliders:\n"
+                          "  P: {text: ranks, key: ranks, values: [2, 8, 100]}\n"
+                          "  L: {text: latency, key: l, unit: us, own: 2.5, values: [10, 0]}\n";
 
 static int begin(void **state)
 {
@@ -156,6 +159,32 @@ static void the_picture_is_of_the_kind(void **state)
     }
 }
 
+/* The values of a slider stand in their order, the own one among them, once. */
+static void sliders_have_the_own_value(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const ranks[] = {"2", "4", "8", "100"}, *const latency[] = {"0 us", "2.5 us",
+                                                                                   "10 us"};
+    struct lab l;
+    read_toy(f, &l, "", false);
+    assert_int_equal(l.nslider, 2);
+    assert_int_equal(l.slider[0].nvalue, 4);
+    for (int i = 0; i < 4; i++) assert_string_equal(l.slider[0].value[i], ranks[i]);
+    assert_int_equal(l.slider[0].own, 1);
+    assert_int_equal(l.slider[1].nvalue, 3);
+    for (int i = 0; i < 3; i++) assert_string_equal(l.slider[1].value[i], latency[i]);
+    assert_int_equal(l.slider[1].own, 1);
+    assert_int_equal(lab_points(&l), 12);
+    /* one whose own value is listed already has it once */
+    for (int i = 0; i < 40; i++) {
+        char name[8];
+        snprintf(name, sizeof name, "s%d", i);
+        read_toy(f, &l, name, false);
+        assert_string_equal(l.slider[0].value[l.slider[0].own], l.number[0].value);
+        assert_int_equal(l.slider[0].nvalue, strcmp(l.number[0].value, "8") == 0 ? 3 : 4);
+    }
+}
+
 /* The copy has the program of its kind alone, and is an attempt. */
 static void a_copy_is_an_attempt(void **state)
 {
@@ -217,6 +246,8 @@ static void damage_is_told(void **state)
         {"[4, 8, 16]", "4", "P: expected a list of numbers", 6},
         {"    unit: rounds\n", "", "question 'rounds' has no 'unit'", 9},
         {"  y: makespan_s\n", "", "picture: expected x and y", 13},
+        {"own: 2.5, ", "", "slider 'L': expected own or a number of that name", 21},
+        {"[10, 0]", "[1, 2, 3, 4, 5, 6, 7, 8]", "fewer than 8 values", 21},
         {"[\"ranks=2,@P@\"]", "[a, b, c, d, e]", "more than 4 settings", 14},
     };
     for (size_t i = 0; i < sizeof damage / sizeof *damage; i++) {
@@ -256,9 +287,13 @@ static void names_are_those_of_folders(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_number_follows_another),     TEST(templates_are_filled),
-        TEST(the_picture_is_of_the_kind),   TEST(a_copy_is_an_attempt),
-        TEST(a_copy_is_whole_or_not_there), TEST(damage_is_told),
+        TEST(a_number_follows_another),
+        TEST(templates_are_filled),
+        TEST(the_picture_is_of_the_kind),
+        TEST(sliders_have_the_own_value),
+        TEST(a_copy_is_an_attempt),
+        TEST(a_copy_is_whole_or_not_there),
+        TEST(damage_is_told),
         TEST(names_are_those_of_folders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
