@@ -35,25 +35,8 @@ static bool look_up_derived(const struct run_spec *run, const char *name, double
 static void read_field(const struct field *f, const void *base, struct arena *a,
                        struct expression_value *v)
 {
-    const char *at = (const char *)base + f->offset;
-    int whole;
-    int64_t large;
     *v = (struct expression_value){.unit = f->unit};
-    switch (f->kind) {
-    case FIELD_REAL:
-        memcpy(&v->number, at, sizeof v->number);
-        return;
-    case FIELD_INT:
-        memcpy(&whole, at, sizeof whole);
-        v->number = whole;
-        return;
-    case FIELD_INT64:
-        memcpy(&large, at, sizeof large);
-        v->number = (double)large;
-        return;
-    default:
-        break;
-    }
+    if (field_number(f, base, &v->number)) return;
     /* in the canonical form, whatever the file wrote */
     struct text t = {0};
     field_print(f, base, &t);

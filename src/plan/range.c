@@ -16,22 +16,11 @@ static double number_of(const struct setting *s, struct arena *a)
 {
     struct run_spec trial;
     char why[256];
-    const char *at = (const char *)&trial + s->table->offset + s->field->offset;
-    CHECK(field_set(s->field, (char *)&trial + s->table->offset, s->text, a, why, (int)sizeof why));
-    if (s->field->kind == FIELD_INT) {
-        int whole;
-        memcpy(&whole, at, sizeof whole);
-        return whole;
-    }
-    if (s->field->kind == FIELD_INT64) {
-        int64_t large;
-        memcpy(&large, at, sizeof large);
-        return (double)large;
-    }
-    /* FIELD_REAL: others were refused */
-    double real;
-    memcpy(&real, at, sizeof real);
-    return real;
+    double number = 0;
+    char *base = (char *)&trial + s->table->offset;
+    CHECK(field_set(s->field, base, s->text, a, why, (int)sizeof why));
+    CHECK(field_number(s->field, base, &number));
+    return number;
 }
 
 /* Settings of other kinds have values, but no order between them. */

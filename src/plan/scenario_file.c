@@ -283,6 +283,8 @@ static bool is_sampled(const struct axis *x, const char *key)
 /* A key cannot both be swept and hold for all runs. */
 static bool check_axes(const struct scenario *s, struct err *e)
 {
+    /* First what is searched: its middle is a setting for all runs, too. */
+    if (!search_file_check(s, e)) return false;
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->base.n; j++) {
             const struct setting *set = &s->base.at[j];
@@ -297,7 +299,7 @@ static bool check_axes(const struct scenario *s, struct err *e)
                 return err_set_at(e, ERR_DATA, s->path, s->axis[j].line,
                                   "'%s' is swept here and sampled in line %d", s->axis[j].key,
                                   s->axis[i].line);
-    return search_file_check(s, e);
+    return true;
 }
 
 /* ---- the command line */

@@ -208,6 +208,29 @@ static void print_int64(const struct field *f, int64_t v, struct text *out)
     else print_real((double)v, f->unit, out);
 }
 
+/* Kinds that can be compared and counted with; a seed, too, although few of its bits fit. */
+bool field_number(const struct field *f, const void *base, double *number)
+{
+    const void *place = (const char *)base + f->offset;
+    switch (f->kind) {
+    case FIELD_REAL:
+        *number = *(const double *)place;
+        return true;
+    case FIELD_INT:
+        *number = *(const int *)place;
+        return true;
+    case FIELD_INT64:
+        *number = (double)*(const int64_t *)place;
+        return true;
+    /* Beyond 2^53 neighbours become equal, which no condition on a seed can notice. */
+    case FIELD_SEED:
+        *number = (double)*(const uint64_t *)place;
+        return true;
+    default:
+        return false;
+    }
+}
+
 /* The inverse of field_set, kind by kind. The identity of a run is made of these texts. */
 void field_print(const struct field *f, const void *base, struct text *out)
 {

@@ -95,6 +95,10 @@ void field_defaults(const struct field_table *t, void *base, struct arena *a);
 /* field_print: the value as text that field_set reads back to the same bits, appended to *out. */
 void field_print(const struct field *f, const void *base, struct text *out);
 
+/* field_number: the number that the field holds in `base`, SI ("unlimited" is -1). False: its kind
+ * has no number. */
+bool field_number(const struct field *f, const void *base, double *number);
+
 /* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with
  * the rows that are for people only. */
 void fields_print(const struct field_table *t, const void *base, bool labels, struct text *out);

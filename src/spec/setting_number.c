@@ -41,6 +41,7 @@ bool setting_number(const char *key, const char *value, double *number, enum uni
     const struct field *f = field_find_full(key, &table);
     char why[160];
     *unit = UNIT_NONE;
+    /* What no table knows is a parameter of a program, or nothing. */
     if (f == NULL)
         return strncmp(key, "program.", 8) == 0 && guess_number(value, number, unit);
     *unit = f->unit;
@@ -52,6 +53,7 @@ bool setting_number(const char *key, const char *value, double *number, enum uni
         /* As field_set reads it; "unlimited" is no number. */
         return f->unit == UNIT_NONE ? plain_number(value, number)
                                     : units_parse(value, f->unit, number, why, (int)sizeof why);
+    /* Words and lists have no order that a figure could draw. */
     default:
         return false;
     }
