@@ -1,4 +1,5 @@
-/* stencil-mpi.c - Jacobi's iteration on a square grid of N by N points, in strips of rows. */
+/* stencil-mpi.c - Jacobi's iteration on a square grid of N by N points, in strips of rows. With the
+ * argument "unchecked" the result is not compared with that of one processor. */
 #include <math.h>
 #include <mpi.h>
 #include <stdlib.h>
@@ -70,7 +71,7 @@ int main(int argc, char **argv)
         y = t;
     }
     MPI_Finalize();
-    const int right = is_right(x, first, m);
+    const int right = (argc > 1 && strcmp(argv[1], "unchecked") == 0) || is_right(x, first, m);
     free(x);
     free(y);
     return right ? EXIT_SUCCESS : EXIT_FAILURE;

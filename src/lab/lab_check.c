@@ -87,6 +87,24 @@ static bool read_answers(struct lab_result *r, const struct lab *l, const struct
     return true;
 }
 
+/* Whether the attempt's scenario is that of the lesson: on another machine the closed forms are
+ * wrong, and a machine could be chosen that makes a wrong program right. */
+static bool same_scenario(const struct lab *l, const char *folder, bool *same, struct err *e)
+{
+    struct text path = {0}, template = {0}, wanted = {0}, found = {0};
+    text_add(&path, "%s/scenario.yaml", l->folder);
+    bool ok = text_read_file(&template, path.s, e);
+    path.length = 0;
+    text_add(&path, "%s/scenario.yaml", folder);
+    ok = ok && text_read_file(&found, path.s, e);
+    if (ok) lab_fill(l, template.s != NULL ? template.s : "", &wanted);
+    *same = ok && wanted.length == found.length &&
+            (found.length == 0 || memcmp(wanted.s, found.s, found.length) == 0);
+    struct text *const mine[] = {&path, &template, &wanted, &found};
+    for (int i = 0; i < 4; i++) text_free(mine[i]);
+    return ok;
+}
+
 /* Run the attempt's scenario in a process of its own, as the student would; its table is not
  * shown, its messages are. */
 static bool run_scenario(const char *folder, const char *database, int *status, struct err *e)
@@ -107,8 +125,10 @@ static const char *outcome(struct store *s, struct arena *a)
     struct err e;
     struct text t = {0};
     err_clear(&e);
-    /* Of several runs one that failed is told; where all are well, the word is "ok". */
-    static const char sql[] = "SELECT status || CASE WHEN text <> '' THEN ': ' || text ELSE '' END "
+    /* Of several runs one that failed is told; where all are well, the word is "ok". The reason of
+     * a deadlock begins with that word. */
+    static const char sql[] = "SELECT CASE WHEN text LIKE status || ':%' THEN text WHEN text <> '' "
+                              "THEN status || ': ' || text ELSE status END "
                               "FROM run ORDER BY status = 'ok', id LIMIT 1";
     const bool ok = store_select(s, sql, 0, NULL, take_value, &t, &e);
     const char *word = arena_text(a, ok && t.length > 0 ? t.s : "the program could not be run");
@@ -171,7 +191,7 @@ static const char *verdict_of(const struct lab_answer *x, struct arena *a)
                    : "the program does something else than the theory";
     if (!x->given) return "no prediction yet";
     if (x->predicted != x->theory) return difference(x, a);
-    return x->ran || !x->asked ? "right" : "right, but the program did not end";
+    return x->ran || !x->asked ? "right" : "right, but the program did not end well";
 }
 
 bool lab_attempt(struct lab *l, const char *folder, const struct node **answers, struct arena *a,
@@ -212,9 +232,11 @@ bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct
     }
     /* The database of an earlier attempt would answer for this one. */
     int status;
+    bool same;
     unlink(database);
-    if (!evaluate_theory(&l, r, e) || !run_scenario(folder, database, &status, e) ||
-        !look(&l, r, database, a, e))
+    if (!evaluate_theory(&l, r, e) || !same_scenario(&l, folder, &same, e)) return false;
+    if (!same) r->program = "not run: scenario.yaml is not the lesson's, copy the lesson again";
+    else if (!run_scenario(folder, database, &status, e) || !look(&l, r, database, a, e))
         return false;
     /* Right is what the program and the student both have as the closed form has it. */
     for (int i = 0; i < r->nanswer; i++) {

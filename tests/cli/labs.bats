@@ -125,3 +125,35 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     fails_with 66 mimdsim lab draw nowhere
     fails_with 64 mimdsim lab draw a b
 }
+
+@test "an attempt on another machine than the lesson's is not run" {
+    works mimdsim lab ring
+    solve ring ring
+    sed -i 's/gap_per_byte: .*/gap_per_byte: 1 ns\/B/' ring/scenario.yaml
+    fails_with 1 mimdsim lab check ring
+    stdout_says "program: not run: scenario.yaml is not the lesson's"
+    stdout_says '0 of 4 right'
+    rm ring/scenario.yaml
+    fails_with 66 mimdsim lab check ring
+}
+
+@test "how a program ended is told once, and with its place" {
+    works mimdsim lab deadlock
+    fails_with 1 mimdsim lab check deadlock
+    stdout_says 'program: deadlock: rank 0 in program waits for rank 1'
+    printf 'this is no C\n' >>deadlock/deadlock.c
+    fails_with 1 mimdsim lab check deadlock
+    stdout_says 'program: the program could not be run'
+    stderr_says 'does not compile'
+}
+
+@test "the course names lessons that there are, with their minutes, and every one of them" {
+    course=$MIMDSIM_SRCDIR/docs/course.md
+    for lab in $labs; do
+        minutes=$(sed -n 's/^minutes: //p' "$MIMDSIM_SRCDIR/labs/$lab/lab.yaml")
+        grep -q "^Time: $minutes minutes" "$MIMDSIM_SRCDIR/labs/$lab/README.md"
+        grep -qF "\`$lab\` ($minutes minutes)" "$course" || { echo "$lab"; return 1; }
+    done
+    # the documents that it sends readers to
+    for document in $(grep -o '`docs/[a-z-]*\.md`' "$course" | tr -d '`' | sort -u); do [ -s "$MIMDSIM_SRCDIR/$document" ]; done
+}
