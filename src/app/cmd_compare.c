@@ -36,6 +36,7 @@ struct request {
     struct arena *arena;
     struct store *own;         /* of -o, NULL: not needed so far */
     struct store *other[MOST_SIDES]; /* databases that were named */
+    struct plan plan[MOST_SIDES]; /* of sides that are run first; no runs: it is none of these */
     int nside;
     struct compare_side side[MOST_SIDES];
 };
@@ -120,17 +121,25 @@ static bool make_runs(struct request *r, const struct plan *p, struct run_spec *
            e->kind == ERR_NONE;
 }
 
-/* The runs of a scenario; on `machine`, unless it is NULL. */
-static bool planned_side(struct request *r, const char *name, const char *scenario,
+/* What side number `side` will run: a scenario; on `machine`, unless it is NULL. Nothing is run or
+ * stored before all sides are found. */
+static bool read_plan(struct request *r, int side, const char *scenario, const char *machine,
+                      struct err *e)
+{
+    struct plan_options o = common_plan(r->common);
+    /* --machine is this verb's argument; everything else of the command line holds for all sides.
+     */
+    if (machine != NULL) o.machine = machine;
+    return plan_read(&r->plan[side], scenario, &o, e);
+}
+
+/* The runs of that plan, made where they are not stored. */
+static bool planned_side(struct request *r, int side, const char *name, const char *scenario,
                          const char *machine, struct err *e)
 {
-    struct plan p = {0};
-    struct plan_options o = common_plan(r->common);
+    const struct plan p = r->plan[side];
     struct text ids = {0};
-    /* --machine is this verb's argument; everything else of the command line holds for all
-     * sides. */
-    if (machine != NULL) o.machine = machine;
-    bool ok = plan_read(&p, scenario, &o, e);
+    bool ok = true;
     struct run_spec *run = TAKE(r->arena, p.nrun + 1, struct run_spec);
     if (ok) memcpy(run, p.run, (size_t)p.nrun * sizeof *run);
     ok = ok && make_runs(r, &p, run, e);
@@ -150,7 +159,6 @@ static bool planned_side(struct request *r, const char *name, const char *scenar
                                                     .run_ids = arena_text(r->arena, ids.s)};
     }
     text_free(&ids);
-    plan_free(&p);
     return ok;
 }
 
@@ -210,9 +218,14 @@ static bool is_number(const char *word)
     return *word != '\0';
 }
 
-/* By what the word is: files are looked at, names are looked up. */
-static bool add_side(struct request *r, const char *word, struct err *e)
+/* By what the word is: files are looked at, names are looked up. Sides that have a plan are run;
+ * those without one are stored already. */
+static bool add_side(struct request *r, int side, const char *word, struct err *e)
 {
+    const enum file_kind kind = file_kind_of(word, r->arena);
+    if (r->plan[side].nrun > 0)
+        return kind == FILE_MACHINE ? planned_side(r, side, word, r->on, word, e)
+                                    : planned_side(r, side, word, word, NULL, e);
     if (is_number(word)) {
         struct text name = {0};
         text_add(&name, "run %s", word);
@@ -224,12 +237,38 @@ static bool add_side(struct request *r, const char *word, struct err *e)
                                         "status = 'ok'",
                                         word, e);
     }
-    switch (file_kind_of(word, r->arena)) {
-    case FILE_DATABASE: return database_side(r, word, e);
-    case FILE_MACHINE: return planned_side(r, word, r->on, word, e);
-    case FILE_SCENARIO: return planned_side(r, word, word, NULL, e);
-    default: return called_side(r, word, e);
+    return kind == FILE_DATABASE ? database_side(r, word, e) : called_side(r, word, e);
+}
+
+/* Databases are closed, sides forgotten. */
+static void forget_sides(struct request *r)
+{
+    for (int i = 0; i < MOST_SIDES; i++) {
+        store_close(r->other[i]);
+        r->other[i] = NULL;
     }
+    store_close(r->own);
+    r->own = NULL;
+    r->nside = 0;
+}
+
+/* Everything that is named has to be there before the first run is made: plans are read, stored
+ * sides are looked up. *makes: some side has runs to make. */
+static bool look_at_sides(struct request *r, bool *makes, struct err *e)
+{
+    bool ok = true;
+    *makes = false;
+    for (int i = 0; ok && i < r->common->narg; i++) {
+        const char *word = r->common->arg[i];
+        const enum file_kind kind = is_number(word) ? FILE_UNKNOWN : file_kind_of(word, r->arena);
+        if (kind == FILE_MACHINE) ok = read_plan(r, i, r->on, word, e);
+        else if (kind == FILE_SCENARIO) ok = read_plan(r, i, word, NULL, e);
+        else ok = add_side(r, i, word, e);
+        *makes = *makes || r->plan[i].nrun > 0;
+    }
+    /* They were looked up for reading; runs that are made need another connection. */
+    forget_sides(r);
+    return ok;
 }
 
 /* "compare-t3e-300-paragon" */
@@ -249,8 +288,10 @@ static bool answer(struct request *r, struct err *e)
 {
     struct compare c;
     const struct common *common = r->common;
+    bool makes;
+    if (!look_at_sides(r, &makes, e) || (makes && own_store(r, true, e) == NULL)) return false;
     for (int i = 0; i < common->narg; i++)
-        if (!add_side(r, common->arg[i], e)) return false;
+        if (!add_side(r, i, common->arg[i], e)) return false;
     bool ok = compare_make(&c, r->nside, r->side, e);
     if (ok) {
         compare_print(&c, common->json, stdout);
@@ -276,8 +317,8 @@ int cmd_compare(int argc, char **argv)
     struct request r = {
         .common = &c, .on = on != NULL ? on : "speedup-t3e", .arena = arena_create()};
     bool ok = answer(&r, &e);
-    for (int i = 0; i < MOST_SIDES; i++) store_close(r.other[i]);
-    store_close(r.own);
+    forget_sides(&r);
+    for (int i = 0; i < MOST_SIDES; i++) plan_free(&r.plan[i]);
     arena_destroy(r.arena);
     if (ok) return 0;
     /* The document was written already when only the figure failed. */

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/arguments.h"
 #include "app/flag.h"
@@ -17,6 +18,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "measure/run_row.h"
+#include "report/how_sure.h"
 #include "run/run.h"
 #include "spec/field.h"
 #include "store/store.h"
@@ -277,6 +279,31 @@ static void print_json(const struct plan *p, const struct run_estimate *r,
 }
 
 /* The rows and the picture of what was measured; a scenario without omissions has no picture. */
+/* How far the times of these runs are known: those of them that the database has. A database that is
+ * not there, or none, says nothing, and explaining makes none. */
+static void tell_errors(const struct common *c, const struct plan *p)
+{
+    struct how_sure h = {0};
+    struct err ignored;
+    err_clear(&ignored);
+    struct text ids = {0}, sentence = {0};
+    struct store *s =
+        access(c->database, R_OK) == 0 ? store_open(c->database, STORE_READ, &ignored) : NULL;
+    for (int i = 0; s != NULL && i < p->nrun; i++) {
+        const int64_t id = store_run_id(s, &p->run[i]);
+        if (id > 0) text_add(&ids, "%s%lld", ids.length > 0 ? "," : "[", (long long)id);
+    }
+    if (ids.length > 0) text_add(&ids, "]");
+    if (ids.length > 0 && how_sure_read(s, ids.s, &h, &ignored)) how_sure_sentence(&h, &sentence);
+    printf("%s\n", sentence.length > 0
+                       ? sentence.s
+                       : "How sure: not known before the runs are made; then each has the errors of "
+                         "level, machine and arithmetic beside its time");
+    text_free(&ids);
+    text_free(&sentence);
+    store_close(s);
+}
+
 static bool keep_and_draw(const struct common *c, const struct savings *all, struct err *e)
 {
     struct text figure = {0};
@@ -317,6 +344,7 @@ int cmd_explain(int argc, char **argv)
     /* Too large for the stack: a row for every omission. */
     struct savings *all = memory_zeroed(1, sizeof *all);
     if (ok && !c.json) print_text(&p, r);
+    if (ok && !c.json) tell_errors(&c, &p);
     /* The table first: measuring takes seconds to minutes. */
     ok = ok && (!measure || savings_measure(&p, r, all, &e));
     if (ok && measure && !c.json) savings_print(stdout, all);

@@ -35,7 +35,10 @@ static void show_range(const struct field *f, struct shown *s)
     if (!number || !is_bound(f->min) || !is_bound(f->max)) return;
     units_print(f->min, f->unit, low, (int)sizeof low);
     units_print(f->max, f->unit, high, (int)sizeof high);
-    snprintf(s->range, sizeof s->range, "%s to %s", low, high);
+    /* Where 0 has a word of its own, it is no end of the range. */
+    if (f->zero != NULL)
+        snprintf(s->range, sizeof s->range, "above 0 to %s, or %s", high, f->zero);
+    else snprintf(s->range, sizeof s->range, "%s to %s", low, high);
 }
 
 /* What a value is: its unit by an example, or the words it may be. */

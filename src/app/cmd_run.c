@@ -370,6 +370,7 @@ int cmd_run(int argc, char **argv)
                      .threads = asked.threads,
                      .spread = spread != NULL};
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
+         run_table_check(&p, &asked.look, &e) &&
          uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e);
     ok = job_agree(&job, &p, ok, &e);
     c.force = c.force || asked.keep_all; /* the same results, but not the same row */

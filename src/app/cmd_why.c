@@ -6,10 +6,12 @@
 
 #include "app/arguments.h"
 #include "app/flag.h"
+#include "app/known_error.h"
 #include "app/verb.h"
 #include "app/why_beside.h"
 #include "app/why_print.h"
 #include "plan/file_kind.h"
+#include "report/how_sure.h"
 #include "spec/identity.h"
 #include "store/store.h"
 
@@ -167,7 +169,8 @@ static bool put_all(const struct common *c, const struct run_spec *spec, const s
     struct store *s = arguments_store(c, c->database, e);
     /* A run that is stored already keeps its row; only its explanation is replaced. */
     bool ok =
-        s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) && store_begin(s, e);
+        s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) &&
+        known_error_note(s, spec, 1, e) && store_begin(s, e);
     if (ok) {
         const int64_t run = store_run_id(s, spec);
         ok = put_shares(s, run, w, e) && put_parameters(s, run, w, e) &&
@@ -181,17 +184,40 @@ static bool put_all(const struct common *c, const struct run_spec *spec, const s
 
 /* ---- the verb ---- */
 
-/* The study first: nothing is stored of a run that cannot be explained. */
-static bool explain(const struct common *c, const struct run_spec *spec, bool keep, bool brief,
-                    struct arena *a, struct err *e)
+/* How far the time is known: of the run that was stored now, or of the one that was asked for. */
+static bool tell_errors(const struct common *c, const struct run_spec *spec, bool keep,
+                        const char *stored, struct text *out, struct err *e)
+{
+    struct how_sure h;
+    struct text ids = {0};
+    struct store *s = store_open(keep ? c->database : c->arg[0], STORE_READ, e);
+    bool ok = s != NULL;
+    if (ok && keep) text_add(&ids, "[%lld]", (long long)store_run_id(s, spec));
+    else text_add(&ids, "[%lld]", strtoll(stored, NULL, 10));
+    ok = ok && how_sure_read(s, ids.s, &h, e);
+    if (ok) how_sure_sentence(&h, out);
+    if (ok && out->length == 0) text_add(out, "How sure: not known.");
+    text_free(&ids);
+    store_close(s);
+    return ok;
+}
+
+/* The study first: nothing is stored of a run that cannot be explained. `stored`: the number of the
+ * run in a database, NULL: it is one of a scenario. */
+static bool explain(const struct common *c, const struct run_spec *spec, const char *stored,
+                    bool brief, struct arena *a, struct err *e)
 {
     struct why w;
     if (!why_study(spec, brief ? 0 : WHY_ALL, c->jobs, c->quiet, a, &w, e))
         return false;
+    const bool keep = stored == NULL;
     if (keep && !put_all(c, spec, &w, e)) return false;
-    if (c->json) why_print_json(spec, &w, stdout);
-    else why_print(spec, &w, stdout);
-    return true;
+    struct text sure = {0};
+    bool ok = tell_errors(c, spec, keep, stored, &sure, e);
+    if (ok && c->json) why_print_json(spec, &w, sure.s, stdout);
+    else if (ok) why_print(spec, &w, sure.s, stdout);
+    text_free(&sure);
+    return ok;
 }
 
 /* Everything that a user can get wrong is found before the first run: a study takes a while. The
@@ -217,7 +243,7 @@ int cmd_why(int argc, char **argv)
         run = p.run[0];
         if (p.nrun > 1 && !c.quiet) fprintf(stderr, "mimdsim: the first of %d points\n", p.nrun);
     }
-    ok = ok && explain(&c, &run, !database, brief, a, &e);
+    ok = ok && explain(&c, &run, database ? c.arg[1] : NULL, brief, a, &e);
     plan_free(&p);
     arena_destroy(a);
     return ok ? 0 : common_fail(&c, &e);

@@ -266,6 +266,18 @@ bool run_table_show(struct store *s, const char *sql, const char *param,
     return report_table(s, sql, 1, &param, &look, out, e);
 }
 
+/* The columns follow from the plan alone. */
+bool run_table_check(const struct plan *p, const struct run_table_look *l, struct err *e)
+{
+    struct columns c = {.arena = arena_create()};
+    struct text sql = {0};
+    list_columns(&c, p);
+    const bool ok = choose_columns(&c, l, &sql, e);
+    text_free(&sql);
+    arena_destroy(c.arena);
+    return ok;
+}
+
 /* The identities of the plan's runs as one parameter: a list of any length, and no text of a
  * user in SQL. */
 bool run_table_print(struct store *s, const struct plan *p, const struct run_table_look *l,

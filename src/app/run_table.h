@@ -18,6 +18,10 @@ struct run_table_look {
 /* run_table_take: "--columns LIST" and "--csv" out of the arguments. False with ERR_USAGE. */
 bool run_table_take(int *argc, char **argv, struct run_table_look *l, struct err *e);
 
+/* run_table_check: whether the columns that `l` names are there for the runs of `p`, before any run
+ * is made. False with ERR_USAGE. */
+bool run_table_check(const struct plan *p, const struct run_table_look *l, struct err *e);
+
 /* run_table_show: the rows of any query with one parameter in the same look, but for the choice of
  * columns. */
 bool run_table_show(struct store *s, const char *sql, const char *param,

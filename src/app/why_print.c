@@ -212,9 +212,10 @@ static void print_limits(const struct why *w, FILE *out)
 
 /* Words first, numbers behind them: the answer is read on the first lines, and the tables are for
  * whoever wants to know where it comes from. */
-void why_print(const struct run_spec *spec, const struct why *w, FILE *out)
+void why_print(const struct run_spec *spec, const struct why *w, const char *sure, FILE *out)
 {
     print_sentences(spec, w, out);
+    fprintf(out, "%s\n", sure);
     print_causes(w, out);
     print_parameters(w, out);
     print_limits(w, out);
@@ -276,7 +277,7 @@ static void json_limits(struct json *j, const struct why *w)
 }
 
 /* The same order as on the terminal. */
-void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out)
+void why_print_json(const struct run_spec *spec, const struct why *w, const char *sure, FILE *out)
 {
     struct text name = {0};
     run_label(spec, &name);
@@ -289,6 +290,7 @@ void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out)
     json_key_int(&j, "n", spec->model.nbody);
     json_key_int(&j, "P", spec->nrank);
     json_key_int(&j, "makespan_ps", w->run.makespan_ps);
+    json_key_text(&j, "how_sure", sure);
     json_key_int(&j, "messages", w->messages);
     json_key_int(&j, "ranks", w->ranks);
     json_shares(&j, w);

@@ -7,8 +7,9 @@
 #include "spec/run_spec.h"
 #include "study/why.h"
 
-/* why_print: for people. why_print_json: one document. */
-void why_print(const struct run_spec *spec, const struct why *w, FILE *out);
-void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out);
+/* why_print: for people; `sure`: a sentence on how far the time is known (report/how_sure.h).
+ * why_print_json: one document. */
+void why_print(const struct run_spec *spec, const struct why *w, const char *sure, FILE *out);
+void why_print_json(const struct run_spec *spec, const struct why *w, const char *sure, FILE *out);
 
 #endif

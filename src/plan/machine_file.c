@@ -181,6 +181,8 @@ static bool read_leaf(void *context, const char *full, const struct node *leaf,
     char why[512];
     if (!field_set(f, &r->machine->spec, text, a, why, (int)sizeof why))
         return err_set_at(e, ERR_DATA, file, leaf->line, "%s: '%.80s': %s", key, text, why);
+    if (field_is_wordless_zero(f, &r->machine->spec, text))
+        setting_zero_remark(key, text, f->zero, file, leaf->line);
     /* A plain value has no evidence. */
     if (leaf->kind != NODE_MAP) return true;
     if (!read_evidence(v, key, leaf, false, e)) return false;

@@ -200,7 +200,7 @@ static int list_origins(const struct machine_file *m, struct origin *list, struc
     /* One origin for each field of the table, whether the file gives it or it is a default. */
     for (int i = 0; i < machine_table.nfield; i++) {
         struct text t = {0};
-        field_print(&machine_table.field[i], &m->spec, &t);
+        field_show(&machine_table.field[i], &m->spec, &t);
         list[n++] = origin_make(machine_table.field[i].key, arena_text(a, t.s != NULL ? t.s : ""),
                                 &m->value[i]);
         text_free(&t);

@@ -244,6 +244,10 @@ static bool unknown_top(struct top *t, const struct node *n)
     const char *names[NTOP + 9] = {"machine", "model",  "kernel", "ranks",   "seed",
                                    "record",  "n",      "n_over_p", "program"};
     for (int i = 0; i < NTOP; i++) names[9 + i] = top_keys[i].name;
+    /* A key of a group, in the wrong place. */
+    if (strcmp(n->key, "sample") == 0)
+        return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line,
+                          "'sample' is a part of 'sweep'; expected it below 'sweep:'");
     const char *near = text_nearest(n->key, names, NTOP + 9);
     if (near == NULL)
         return program_file_unknown(t->scenario, n->key, t->scenario->path, n->line, t->err);

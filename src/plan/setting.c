@@ -6,6 +6,7 @@
  * and applied to each run later, when it cannot fail any more. */
 #include "plan/setting.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/check.h"
@@ -110,6 +111,14 @@ static const char *tolerance_of(const struct setting *s)
     return rest > s->text + n && *rest ? rest : NULL;
 }
 
+/* Files of earlier versions say 0 where there is no limit; they are read as they were meant. */
+void setting_zero_remark(const char *key, const char *text, const char *word, const char *file,
+                         int line)
+{
+    fprintf(stderr, "mimdsim: %s:%d: %s: '%.80s' is read as '%s', which it is called now\n", file,
+            line, key, text, word);
+}
+
 /* What kind of setting it is, and whether its value makes sense. 'auto-tolerance 2 %' is two
  * settings in one text: the second hangs on the first. */
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line,
@@ -136,9 +145,15 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     if (s->field == NULL) return setting_unknown("", key, file, line, e);
     /* Only a trial: what it allocates goes again. */
     struct arena_mark mark = arena_mark(a);
-    bool fine =
-        field_set(s->field, (char *)&trial + s->table->offset, text, a, why, (int)sizeof why);
+    char *base = (char *)&trial + s->table->offset;
+    bool fine = field_set(s->field, base, text, a, why, (int)sizeof why);
+    const bool zero = fine && field_is_wordless_zero(s->field, base, text);
     arena_release(a, mark);
+    /* Files may be old ones; what is typed now is not. */
+    if (zero && line > 0) setting_zero_remark(s->key, text, s->field->zero, file, line);
+    else if (zero)
+        return err_set_at(e, ERR_DATA, file, line, "%s: '%.80s' would be no rate at all; write '%s'",
+                          s->key, text, s->field->zero);
     return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
 }
 

@@ -60,6 +60,10 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
 bool setting_list_add(struct setting_list *list, const char *key, const char *text,
                       const char *file, int line, struct arena *a, struct err *e);
 
+/* setting_zero_remark: say on standard error that a file's 0 is read as `word`. */
+void setting_zero_remark(const char *key, const char *text, const char *word, const char *file,
+                         int line);
+
 /* setting_apply: put a field's value into *run; other kinds do nothing. */
 void setting_apply(const struct setting *s, struct run_spec *run, struct arena *a);
 

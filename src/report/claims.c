@@ -230,11 +230,19 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
 
 /* --- verdicts --------------------------------------------------------------------------------- */
 
+/* Machines that are not as shipped: their runs count only when asked for. */
+struct changes {
+    int machines;
+    int64_t runs;
+    struct text names;
+};
+
 /* One claim in the making: its designated row, and where else it holds. */
 struct deciding {
     struct store *s;
     struct err *e;
     bool what_if;
+    const char *names; /* of the changed machines; NULL: there are none */
     int64_t changed; /* runs on machines that are not as shipped */
     bool found, whole;
     struct judgement own; /* texts below */
@@ -341,7 +349,8 @@ static bool decide_row(void *context, const struct claim_rule *rule, const struc
 /* The note of the claim: its own verdict, then where the verdict would be the other one. */
 static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, struct text *note)
 {
-    if (d->what_if && d->changed > 0) text_add(note, "what-if, runs on changed machines count; ");
+    if (d->what_if && d->changed > 0)
+        text_add(note, "what-if, runs on changed machines count (%s); ", d->names);
     /* Without all its runs the variant was not judged, whatever the rule. */
     if (d->whole) text_add(note, "judged for %s: ", rule->designated);
     text_add(note, "%s", d->own_note.s ? d->own_note.s : "");
@@ -353,11 +362,11 @@ static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, str
 }
 
 /* One claim. Its variants' rows come first; the claim's own row needs their counts. */
-static bool decide(const struct claim_rule *rule, struct store *s, bool what_if, int64_t changed,
-                   struct err *e)
+static bool decide(const struct claim_rule *rule, struct store *s, bool what_if,
+                   const struct changes *changes, struct err *e)
 {
     struct deciding d = {
-        .s = s, .e = e, .what_if = what_if, .changed = changed,
+        .s = s, .e = e, .what_if = what_if, .changed = changes->runs, .names = changes->names.s,
         .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
     bool ok = claims_judge(rule, s, what_if ? "what-if" : "as shipped", decide_row, &d, e);
     struct text note = {0};
@@ -372,31 +381,42 @@ static bool decide(const struct claim_rule *rule, struct store *s, bool what_if,
     return ok;
 }
 
-static bool take_count(void *context, int ncolumn, const char *const *name,
-                       const struct store_value *value)
+/* A machine that was changed: what it is called, and its runs. Of many names the first three. */
+static bool take_changed(void *context, int ncolumn, const char *const *name,
+                         const struct store_value *value)
 {
+    struct changes *c = context;
     (void)ncolumn;
     (void)name;
-    *(int64_t *)context = value[0].integer;
-    return false;
+    if (c->machines < 3)
+        text_add(&c->names, "%s%s", c->machines > 0 ? "; " : "", value[0].text);
+    if (c->machines == 3) text_add(&c->names, "; and others");
+    c->machines++;
+    c->runs += value[1].integer;
+    return true;
 }
 
 bool claims_decide(const struct claim_rules *c, struct store *s, struct err *e)
 {
-    int64_t changed = 0;
+    struct changes changes = {0};
+    bool ok = true;
     /* Only machines that the claims are about, and not the runs that the study itself makes with
      * changes. */
-    if (!store_query(s, "SELECT count(*) FROM v_machine_state WHERE state <> 'as shipped'"
-                        " AND machine IN ('t3e-300', 'paragon')"
-                        " AND run_id NOT IN (SELECT id FROM run WHERE scenario LIKE 'paper-%')",
-                     0, NULL, NULL, take_count, &changed, e) ||
-        !store_begin(s, e))
+    if (!store_query(s,
+                     "SELECT l.name, count(*) FROM v_machine_state m JOIN v_label l ON l.run_id = "
+                     "m.run_id WHERE m.state <> 'as shipped' AND m.machine IN ('t3e-300', "
+                     "'paragon') AND m.run_id NOT IN (SELECT id FROM run WHERE scenario LIKE "
+                     "'paper-%') GROUP BY l.name ORDER BY min(m.run_id)",
+                     0, NULL, NULL, take_changed, &changes, e) ||
+        !store_begin(s, e)) {
+        text_free(&changes.names);
         return false;
+    }
     /* All claims or none: a table with old and new verdicts would be read as one study. */
-    bool ok = true;
     for (int i = 0; ok && i < c->n; i++)
         ok = store_delete(s, "claim", "id", store_text(c->rule[i].id), e) &&
-             decide(&c->rule[i], s, c->what_if, changed, e);
+             decide(&c->rule[i], s, c->what_if, &changes, e);
+    text_free(&changes.names);
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "report/findings.h"
+#include "report/how_sure.h"
 
 /* Where the writing stands; an error inside a row's function stops it. */
 struct section {
@@ -52,6 +53,12 @@ bool runs_section(struct page *p, struct store *s, struct err *e)
     page_heading(p, 2, "Runs by kernel and machine");
     page_paragraph(p, "All runs of the database. A machine that was changed has a name of its own, "
                       "and the table says what was changed.");
+    struct how_sure sure;
+    struct text sentence = {0};
+    if (!how_sure_read(s, NULL, &sure, e)) return false;
+    how_sure_sentence(&sure, &sentence);
+    if (sentence.length > 0) page_paragraph(p, sentence.s);
+    text_free(&sentence);
     return store_select(s,
                         "SELECT kernel, max(status = 'ok') FROM run GROUP BY kernel"
                         " ORDER BY count(*) DESC, kernel",

@@ -8,6 +8,7 @@
 
 #include "base/digest.h"
 #include "report/figure_rows.h"
+#include "report/how_sure.h"
 #include "store/build.h"
 
 /* "version (commit)" of each program that made a run, joined by commas. */
@@ -28,49 +29,13 @@ static bool add_hash(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-/* One error: of all runs, of some, of none. `value`: the text of the largest. */
-static void add_error(struct text *t, const char *what, const char *value, int known, int all)
-{
-    text_add(t, "%s%s ", t->length > 0 ? ", " : "error of ", what);
-    if (known == 0) text_add(t, "not known");
-    else text_add(t, "%s", value);
-    if (known > 0 && known < all) text_add(t, " (%d of %d runs)", known, all);
-}
-
-/* runs, level error and how many know it, machine's low, high and how many, arithmetic's and how
- * many */
-static bool add_errors(void *context, int ncolumn, const char *const *name,
-                       const char *const *value)
-{
-    struct text *t = context;
-    double x[8];
-    char text[64];
-    (void)ncolumn, (void)name;
-    for (int i = 0; i < 8; i++) x[i] = value[i] != NULL ? strtod(value[i], NULL) : 0;
-    const int all = (int)x[0];
-    /* runs without a predicted time have no error of it */
-    if (all == 0) return false;
-    snprintf(text, sizeof text, "<= %.2g %%", 100 * x[1]);
-    add_error(t, "level", text, (int)x[2], all);
-    snprintf(text, sizeof text, "%+.0f..%+.0f %%", 100 * x[3], 100 * x[4]);
-    add_error(t, "machine", text, (int)x[5], all);
-    snprintf(text, sizeof text, "<= %.1g", x[6]);
-    add_error(t, "arithmetic", text, (int)x[7], all);
-    return false;
-}
-
-/* A database of a program that did not know errors yet has no such view: nothing is said then. */
+/* What cannot be asked is not said: a figure is drawn all the same. */
 static void known_errors(struct store *s, const char *run_ids, struct text *out)
 {
     struct err ignored;
-    const char *const bound[] = {run_ids};
+    struct how_sure h;
     err_clear(&ignored);
-    (void)store_select(s,
-                       "SELECT count(*), max(level_error), count(level_error), min(machine_low),"
-                       " max(machine_high), count(machine_low), max(arithmetic_error),"
-                       " count(arithmetic_error) FROM v_known_error"
-                       " WHERE run_id IN (SELECT value FROM json_each(?1))",
-                       1, bound, add_errors, out, &ignored);
+    if (how_sure_read(s, run_ids, &h, &ignored)) how_sure_short(&h, out);
     if (out->length > 0) text_add(out, "; ");
 }
 

@@ -41,6 +41,7 @@ bool field_int_parse(const char *text, int64_t *value, char *why, int size)
 static bool set_real(const struct field *f, double *place, const char *text, char *why, int size)
 {
     double v;
+    if (f->zero != NULL && strcmp(text, f->zero) == 0) return *place = 0, true;
     if (!units_parse(text, f->unit, &v, why, size) || !field_in_range(f, v, why, size))
         return false;
     *place = v;
@@ -229,6 +230,24 @@ bool field_number(const struct field *f, const void *base, double *number)
     default:
         return false;
     }
+}
+
+/* A rate of 0 that stands for no limit reads as the opposite of what it means. */
+static bool is_zero(const struct field *f, const void *base)
+{
+    const char *place = (const char *)base + f->offset;
+    return f->zero != NULL && *(const double *)(const void *)place == 0;
+}
+
+void field_show(const struct field *f, const void *base, struct text *out)
+{
+    if (is_zero(f, base)) text_add(out, "%s", f->zero);
+    else field_print(f, base, out);
+}
+
+bool field_is_wordless_zero(const struct field *f, const void *base, const char *text)
+{
+    return is_zero(f, base) && strcmp(text, f->zero) != 0;
 }
 
 /* The inverse of field_set, kind by kind. The identity of a run is made of these texts. */

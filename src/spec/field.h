@@ -50,6 +50,8 @@ struct field {
     const char *const *choice; /* NULL-terminated */
     const char *fallback;      /* default as text; NULL: has to be given */
     const char *doc;           /* one line for the manual */
+    const char *zero; /* FIELD_REAL: the word for 0 where that is no small number: "unlimited", which
+                         field_set takes as well as 0; NULL: 0 is a number */
     field_idle_fn *idle;       /* NULL: acts in every run */
     bool (*valid)(const char *text, char *why,
                   int size);   /* FIELD_TEXT: whether it may be this, else a clause why not;
@@ -98,6 +100,12 @@ void field_print(const struct field *f, const void *base, struct text *out);
 /* field_number: the number that the field holds in `base`, SI ("unlimited" is -1). False: its kind
  * has no number. */
 bool field_number(const struct field *f, const void *base, double *number);
+
+/* field_show: the same for people: a 0 that has a word is that word. Identities and databases keep
+ * the number. field_is_wordless_zero: whether `text`, which field_set has taken to `base`, is a 0
+ * that has a word. */
+void field_show(const struct field *f, const void *base, struct text *out);
+bool field_is_wordless_zero(const struct field *f, const void *base, const char *text);
 
 /* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with
  * the rows that are for people only. */

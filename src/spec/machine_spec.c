@@ -148,8 +148,8 @@ static const struct field fields[] = {
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},
     {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(node.copy_bandwidth), .min = 0,
-     .max = 1e15, .fallback = "0 B/s",
-     .doc = "rate of memory copies by the program (packing), 0: free"},
+     .max = 1e15, .fallback = "unlimited", .zero = "unlimited",
+     .doc = "rate of memory copies by the program (packing)"},
 
     /* The wire (docs/network.md 1). Zero load: T = R hop_latency + (S - 1) flits + end_latency. */
     {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels,
@@ -162,7 +162,8 @@ static const struct field fields[] = {
     {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(network.link_bandwidth),
      .min = 0, .max = 1e15,
-     .doc = "payload rate of one link and direction, 0: unlimited (loggp and link only)"},
+     .zero = "unlimited",
+     .doc = "payload rate of one link and direction; unlimited at loggp and link only"},
     {.key = "network.injection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(network.injection_bandwidth), .min = 0, .max = 1e15, .fallback = "0 B/s",
      .doc = "rate from node into network, 0: that of a link"},

@@ -86,6 +86,14 @@ static void add_value(const char *value, struct text *out)
         else if (*s != '[' && *s != ']' && *s != ' ') text_add_bytes(out, s, 1);
 }
 
+/* "unlimited" for a rate of 0 that means so. */
+static const char *word_of(bool known, const char *key, const char *value)
+{
+    const struct field *f = known ? &machine_table.field[field_find(&machine_table, key)] : NULL;
+    if (f == NULL || f->zero == NULL || strtod(value, NULL) != 0) return value;
+    return f->zero;
+}
+
 void run_label_changed(const char *name, const char *changes, struct text *out)
 {
     struct text key = {0}, value = {0};
@@ -96,7 +104,7 @@ void run_label_changed(const char *name, const char *changes, struct text *out)
         /* A key that this version does not know any more is told in full. */
         const bool known = field_find(&machine_table, key.s) >= 0;
         text_add(out, ", %s ", known ? field_short_key(&machine_table, key.s) : key.s);
-        add_value(value.s, out);
+        add_value(word_of(known, key.s, value.s), out);
     }
     if (n > MOST_CHANGES) {
         char hex[65];

@@ -59,3 +59,22 @@ load helper
     MIMDSIM_GNUPLOT=/no/gnuplot fails_with 69 mimdsim compare t3e-300 paragon --set n=4 --set level=loggp -o c.db
     stdout_says 'B takes '
 }
+
+@test "all sides are found before anything is run or stored" {
+    fails_with 66 mimdsim compare t3e-300 nowhere --set n=4
+    stderr_says "'nowhere' is no machine"
+    nothing_left_behind
+    fails_with 66 mimdsim compare t3e-300 /dev/null --set n=4
+    nothing_left_behind
+    fails_with 66 mimdsim compare speedup-t3e 17 --set n=4
+    nothing_left_behind
+    printf 'schema_version: 1\nbase: t3e-300\nnetwork: {hop_latency: 3}\n' >bad.yaml
+    fails_with 65 mimdsim compare t3e-300 bad.yaml --set n=4
+    [ ! -e mimdsim.db ]
+    # A run that is stored and a machine whose runs are made go together, in either order.
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp --quiet
+    works mimdsim compare 1 paragon --set n=4 --set level=loggp
+    stdout_says 'run 1'
+    works mimdsim compare paragon 1 --set n=4 --set level=loggp
+    sql_is mimdsim.db 'SELECT count(*) FROM run' 2
+}

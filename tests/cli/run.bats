@@ -127,3 +127,38 @@ digests() { sql "$1" 'SELECT level, n, digest FROM run ORDER BY level, n'; }
     stderr_says 'closed is a folder'
     [ -z "$(ls closed)" ]
 }
+
+@test "columns that are not there are told before a database is made" {
+    fails_with 64 mimdsim run speedup-t3e --set n=4 --columns foo
+    stderr_says "no column 'foo'"
+    nothing_left_behind
+}
+
+@test "a rate without a limit is called unlimited; 0 is refused where it is typed, and told where it is read" {
+    refused() { fails_with 65 mimdsim run ideal-test.yaml "$@" -o own.db; [ ! -e own.db ]; }
+    printf 'schema_version: 1\nmachine: ideal\nkernel: {name: pingpong}\nranks: 2\nlevel: loggp\n' >ideal-test.yaml
+    refused --set 'machine.network.link.bandwidth=0 MB/s'
+    stderr_says "write 'unlimited'"
+    works mimdsim run ideal-test.yaml -o own.db --quiet
+    works mimdsim run ideal-test.yaml --set machine.network.link.bandwidth=unlimited -o own.db --quiet
+    stderr_is_empty
+    # It is the same machine, and its identity is that of before.
+    sql_is own.db 'SELECT count(*) FROM run' 1
+    sql_is own.db "SELECT number FROM v_setting WHERE key = 'machine.network.link.bandwidth'" 0.0
+    works mimdsim machines ideal
+    stdout_says 'unlimited'
+    works mimdsim keys copy.bandwidth
+    stdout_says 'or unlimited; default unlimited'
+    # An older file is read as it was meant.
+    printf 'schema_version: 1\nbase: ideal\nnetwork: {link: {bandwidth: 0 B/s}}\n' >old.yaml
+    works mimdsim run ideal-test.yaml -m old.yaml -o old.db
+    stderr_says "old.yaml:3: network.link.bandwidth: '0 B/s' is read as 'unlimited'"
+    works mimdsim run ideal-test.yaml -m t3e-300 --set machine.network.link.bandwidth=unlimited -o name.db
+    stdout_says 'link.bandwidth unlimited'
+}
+
+@test "a sample at the top of a scenario is sent below its sweep" {
+    printf 'schema_version: 1\nkernel: dynamics\nsample: {points: 4}\n' >s.yaml
+    fails_with 65 mimdsim run s.yaml
+    stderr_says "s.yaml:3: 'sample' is a part of 'sweep'"
+}

@@ -47,6 +47,29 @@ load helper
     ! grep -q 'Slack' <<<"$output"
 }
 
+@test "why, explain and the report say how far times are known, and what is not known" {
+    works mimdsim explain speedup-t3e --set n=4
+    stdout_says 'How sure: not known before the runs are made'
+    works mimdsim why speedup-t3e --set n=4 --set level=loggp --quiet
+    stdout_says 'How sure: the network level is not known to be right'
+    stdout_says 'not known (mimdsim run --uncertainty 64 tells)'
+    stdout_says 'the arithmetic is within'
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp --uncertainty 8 --quiet
+    works mimdsim why mimdsim.db 1 --brief
+    stdout_matches 'leave open is -[0-9]+ to \+[0-9]+ %;'
+    works mimdsim explain speedup-t3e --set n=4 --set level=loggp
+    stdout_matches 'leave open is -[0-9]+ to \+[0-9]+ %;'
+    works mimdsim why mimdsim.db 1 --json
+    [[ "$(sqlite3 :memory: "SELECT json_extract('$output', '\$.how_sure')")" == 'How sure:'* ]]
+    command -v gnuplot >/dev/null || skip "gnuplot is not installed"
+    works mimdsim report mimdsim.db
+    grep -q 'How sure: the network level' mimdsim.md
+    # A file that is no database says nothing, and explaining goes on.
+    echo text >no.db
+    works mimdsim explain speedup-t3e --set n=4 -o no.db
+    stdout_says 'How sure: not known'
+}
+
 @test "why calls a run what it is called" {
     works mimdsim why speedup-t3e --set n=8 --set machine.network.hop_latency="60 us" -o own.db --quiet
     stdout_says 'dynamics on t3e-300, hop_latency 60 us, n = 8'
