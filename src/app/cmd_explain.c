@@ -279,8 +279,8 @@ static void print_json(const struct plan *p, const struct run_estimate *r,
 }
 
 /* The rows and the picture of what was measured; a scenario without omissions has no picture. */
-/* How far the times of these runs are known: those of them that the database has. A database that is
- * not there, or none, says nothing, and explaining makes none. */
+/* How far the times of these runs are known: those of them that the database has. A database that
+ * is not there, or none, says nothing, and explaining makes none. */
 static void tell_errors(const struct common *c, const struct plan *p)
 {
     struct how_sure h = {0};
@@ -297,8 +297,8 @@ static void tell_errors(const struct common *c, const struct plan *p)
     if (ids.length > 0 && how_sure_read(s, ids.s, &h, &ignored)) how_sure_sentence(&h, &sentence);
     printf("%s\n", sentence.length > 0
                        ? sentence.s
-                       : "How sure: not known before the runs are made; then each has the errors of "
-                         "level, machine and arithmetic beside its time");
+                       : "How sure: not known before the runs are made; then each has the errors "
+                         "of level, machine and arithmetic beside its time");
     text_free(&ids);
     text_free(&sentence);
     store_close(s);

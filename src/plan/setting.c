@@ -152,8 +152,9 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     /* Files may be old ones; what is typed now is not. */
     if (zero && line > 0) setting_zero_remark(s->key, text, s->field->zero, file, line);
     else if (zero)
-        return err_set_at(e, ERR_DATA, file, line, "%s: '%.80s' would be no rate at all; write '%s'",
-                          s->key, text, s->field->zero);
+        return err_set_at(e, ERR_DATA, file, line,
+                          "%s: '%.80s' would be no rate at all; write '%s'", s->key, text,
+                          s->field->zero);
     return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
 }
 

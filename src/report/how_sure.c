@@ -64,7 +64,7 @@ void how_sure_sentence(const struct how_sure *h, struct text *out)
     if (h->level > 0) text_add(out, "within %.2g %%", 100 * h->level_error);
     else text_add(out, "not known to be right (mimdsim accuracy measures it)");
     add_part(out, h->level, h->runs);
-    text_add(out, "; what the machine's parameters leave open is ");
+    text_add(out, "; what the parameters of the machine leave open is ");
     if (h->machine > 0)
         text_add(out, "%+.0f to %+.0f %%", 100 * h->machine_low, 100 * h->machine_high);
     else text_add(out, "not known (mimdsim run --uncertainty 64 tells)");

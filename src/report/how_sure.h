@@ -1,5 +1,6 @@
-/* how_sure.h - how far predicted times are known, in words: the errors of the network level, of the
- * machine's parameters and of the arithmetic (view v_known_error), "not known" where they are not. */
+/* how_sure.h - how far predicted times are known, in words: the errors of the network level, of
+ * the parameters of the machine and of the arithmetic (view v_known_error), "not known" where they
+ * are not. */
 #ifndef REPORT_HOW_SURE_H
 #define REPORT_HOW_SURE_H
 
@@ -12,8 +13,8 @@ struct how_sure {
     double level_error, machine_low, machine_high, arithmetic_error; /* relative */
 };
 
-/* how_sure_read: of the runs in a JSON array of their numbers, NULL: of all. A database of a program
- * that did not know errors yet knows none. Returns false as store_select. */
+/* how_sure_read: of the runs in a JSON array of their numbers, NULL: of all. A database of a
+ * program that did not know errors yet knows none. Returns false as store_select. */
 bool how_sure_read(struct store *s, const char *run_ids, struct how_sure *out, struct err *e);
 
 /* how_sure_sentence: "How sure: the network level is within 1.2 % (12 of 40 runs); ...", with the

@@ -50,8 +50,8 @@ struct field {
     const char *const *choice; /* NULL-terminated */
     const char *fallback;      /* default as text; NULL: has to be given */
     const char *doc;           /* one line for the manual */
-    const char *zero; /* FIELD_REAL: the word for 0 where that is no small number: "unlimited", which
-                         field_set takes as well as 0; NULL: 0 is a number */
+    const char *zero; /* FIELD_REAL: the word for 0 where that is no small number: "unlimited",
+                         which field_set takes as well as 0; NULL: 0 is a number */
     field_idle_fn *idle;       /* NULL: acts in every run */
     bool (*valid)(const char *text, char *why,
                   int size);   /* FIELD_TEXT: whether it may be this, else a clause why not;

@@ -49,6 +49,8 @@ load helper
 @test "what is no side is told with the nearest name" {
     fails_with 66 mimdsim compare t3e-300 paragn --set n=4 --set level=loggp -o c.db
     stderr_says "did you mean 'paragon'?"
+    [ ! -e c.db ] # nothing was run before both sides were found
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp -o c.db --quiet
     fails_with 66 mimdsim compare 1 99 -o c.db
     stderr_says "'run 99' has no run that ended well"
     fails_with 64 mimdsim compare t3e-300
