@@ -175,7 +175,7 @@ solver() {
     plant "machine_changes = '{\"node.flop_rate\": \"9 Mflop/s\"}', n = 24, P = 24" "$(fastest 2300)"
     verdict C2 '' pass
     works mimdsim claims planted.db --what-if
-    sql_is planted.db "SELECT verdict, note LIKE 'what-if, runs on changed machines count;%' FROM claim WHERE id = 'C2' AND variant = ''" 'fail|1'
+    sql_is planted.db "SELECT verdict, note LIKE 'what-if, runs on changed machines count (t3e-300); %' FROM claim WHERE id = 'C2' AND variant = ''" 'fail|1'
     # a database of what-ifs alone cannot be judged, and says why
     sqlite3 planted.db "DELETE FROM baseline WHERE run_id = (SELECT max(id) FROM run); DELETE FROM run WHERE id = (SELECT max(id) FROM run);
                         UPDATE run SET machine_changes = '{\"node.flop_rate\": \"9 Mflop/s\"}'"
