@@ -17,7 +17,7 @@
 
 /* Longest text or blob [B], longest statement [B]: beyond what this program stores, within what a
  * small computer has. */
-enum { MOST_LENGTH = 256 << 20, MOST_STATEMENT = 4 << 20 };
+enum { MOST_LENGTH = 64 << 20, MOST_STATEMENT = 4 << 20 };
 
 /* --- sum ------------------------------------------------------------------------------------- */
 

@@ -11,6 +11,7 @@
 static char folder[128];
 static FILE *sink;
 static double allowed = FUZZ_SECONDS;
+static bool whole;
 
 static int remove_entry(const char *path, const struct stat *s, int kind, struct FTW *w)
 {
@@ -23,6 +24,18 @@ static void remove_folder(void) { nftw(folder, remove_entry, 16, FTW_DEPTH | FTW
 void fuzz_allow(double seconds) { allowed = seconds; }
 
 double fuzz_allowed(void) { return allowed; }
+
+void fuzz_whole(bool all) { whole = all; }
+
+bool fuzz_is_whole(void) { return whole; }
+
+/* FNV-1a, its high half: the low bits alone depend on the low bits of the bytes alone. */
+size_t fuzz_choice(const uint8_t *data, size_t size)
+{
+    uint64_t h = UINT64_C(14695981039346656037);
+    for (size_t i = 0; i < size; i++) h = (h ^ data[i]) * UINT64_C(1099511628211);
+    return (size_t)(h >> 32);
+}
 
 /* A file system in memory: millions of inputs are written. */
 const char *fuzz_folder(void)

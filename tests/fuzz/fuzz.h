@@ -34,6 +34,15 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
 void fuzz_allow(double seconds);
 double fuzz_allowed(void);
 
+/* fuzz_whole: whether the next inputs are files of the corpus, of which everything is tried, however
+ * long it takes; fuzz_is_whole tells. Otherwise, and under libFuzzer, a harness may try a part that
+ * follows from the input. */
+void fuzz_whole(bool whole);
+bool fuzz_is_whole(void);
+
+/* fuzz_choice: a number that follows from the input's bytes, to choose such a part by. */
+size_t fuzz_choice(const uint8_t *data, size_t size);
+
 /* fuzz_file: write the input to file `name` in a folder of this process, in memory where the system
  * has such; returns its path. The folder is removed when the process ends. */
 const char *fuzz_file(const char *name, const void *data, size_t size);

@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         for (size_t i = 0; i < count && at + i < n; i++)
             changed[at + i] = (uint8_t)fuzz_take(&b, 1);
     }
-    database_read(fuzz_file("input.db", changed, n));
+    database_read(fuzz_file("input.db", changed, n), fuzz_choice(data, size));
     free(changed);
     return 0;
 }

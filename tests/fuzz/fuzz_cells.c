@@ -64,7 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char path[256];
     snprintf(path, sizeof path, "%s", fuzz_file("input.db", image, n));
     change(path, sql);
-    database_read(path);
+    database_read(path, fuzz_choice(data, size));
     free(sql);
     return 0;
 }

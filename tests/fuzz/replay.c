@@ -144,7 +144,9 @@ static void run_file(const char *path)
     uint8_t *data = malloc(size + 1);
     CHECK(data != NULL && fread(data, 1, size, in) == size);
     fclose(in);
+    fuzz_whole(true);
     run_input(data, size);
+    fuzz_whole(false);
     if (nfile == MOST_FILES || size > MOST_BYTES) {
         free(data);
         return;
