@@ -1,8 +1,9 @@
 /* err.h - errors that a user can mend, as values: kind, place in the user's file, text.
  *
  * Functions that can fail return bool and take a `struct err *`. The first cause wins: a second ERR
- * on an error already set is ignored, so callers add context with err_in and leave. No allocation,
- * no globals.
+ * on an error already set is ignored, so callers add context with err_in and leave. No globals; no
+ * allocation but for texts that are too long, which lose a part of their middle: a path says most
+ * with its ends.
  *
  * Exit statuses follow sysexits.h where it has a fitting one. */
 #ifndef BASE_ERR_H

@@ -252,7 +252,10 @@ static void kernel_estimate(const struct program_run *r, struct program_estimate
         loader_start(g->copy, 0, NULL);
         loader_call(g->copy, (void *)g->declared->estimate, argument);
     }
-    *out = (struct program_estimate){e.messages, e.bytes, e.flops, e.rank_bytes};
+    *out = (struct program_estimate){.messages = e.messages,
+                                     .bytes = e.bytes,
+                                     .flops = e.flops,
+                                     .rank_bytes = e.rank_bytes};
 }
 
 static const struct program_type kernel_type = {

@@ -193,7 +193,8 @@ static void mpi_close(struct program_run *r)
 static void mpi_estimate(const struct program_run *r, struct program_estimate *out)
 {
     (void)r;
-    *out = (struct program_estimate){NAN, NAN, NAN, NAN};
+    *out = (struct program_estimate){
+        .messages = NAN, .bytes = NAN, .flops = NAN, .rank_bytes = NAN};
 }
 
 const struct program_type guest_mpi_type = {

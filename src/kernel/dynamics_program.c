@@ -31,12 +31,39 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
     return true;
 }
 
+/* Host memory of a body, beside the ranks' [B]: model, references in other precisions, serial
+ * codes. Peaks of runs with 10^4 and 10^5 bodies on 1 and 16 ranks (host_peak_bytes), less the
+ * ranks' part. A chain may be solved again with refinement, which keeps every factor. The last two
+ * are what no run was seen to need less than, with the ranks' part. */
+enum {
+    INVERSE_BODY_BYTES = 1900,
+    TREE_BODY_BYTES = 3500,
+    LOOP_BODY_BYTES = 5200,
+    CHAIN_BODY_BYTES = 13500,
+    LEAST_BODY_BYTES = 1900,
+    LEAST_FORWARD_BODY_BYTES = 4000
+};
+
+extern const struct program_type inverse_program; /* below */
+
+/* Of 10^7 bodies, asked for by a line of text, none is made when they cannot fit: making them takes
+ * minutes, and the memory of everybody else. Files are as large as their models. */
+static bool fits_in_memory(const struct program_run *r, struct err *e)
+{
+    const struct model_spec *m = &r->spec.model;
+    if (m->generator == MODEL_URDF || m->generator == MODEL_VECTOR) return true;
+    const int each = r->type == &inverse_program ? LEAST_BODY_BYTES : LEAST_FORWARD_BODY_BYTES;
+    char what[64];
+    snprintf(what, sizeof what, "a run of %d bodies", m->nbody);
+    return size_in_memory(size_product((size_t)m->nbody, (size_t)each), "", 0, what, e);
+}
+
 /* Bodies that were merged away still count in the run's row: the user described them. */
 static bool open(struct program_run *r, struct err *e)
 {
     /* The scene belongs to the cache: runs of one campaign that differ in machine or network share
      * it. */
-    struct scene *scene = scene_take(r->cache, &r->spec, e);
+    struct scene *scene = fits_in_memory(r, e) ? scene_take(r->cache, &r->spec, e) : NULL;
     if (!scene || !dynamics_open(r, scene->model, scene->state, e)) return false;
     struct dynamics_run *d = dynamics_run_of(r);
     d->scene = scene;
@@ -132,7 +159,13 @@ static void baselines(struct program_run *r, const struct work_price *price, str
 static void estimate(const struct program_run *r, struct program_estimate *out)
 {
     const struct dynamics_run *d = dynamics_run_of(r);
-    d->kernel->estimate(&r->spec, d->job.model, &d->job.omit, out);
+    const struct model *m = d->job.model;
+    d->kernel->estimate(&r->spec, m, &d->job.omit, out);
+    const int each = !d->kernel->does_forward ? INVERSE_BODY_BYTES
+                     : m->nloop > 0           ? LOOP_BODY_BYTES
+                     : m->is_chain            ? CHAIN_BODY_BYTES
+                                              : TREE_BODY_BYTES;
+    out->scene_bytes = (double)m->nbody * each;
 }
 
 static void leave_out(const struct program_run *r, struct left_out *l)

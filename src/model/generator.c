@@ -276,6 +276,8 @@ struct model *generator_model(const struct model_spec *spec, struct arena *a, st
 {
     struct model *m = model_begin(a, NULL);
     const struct model_spec x = in_own_units(spec, m);
+    /* Of 10^8 bodies none is made before all are known to fit. */
+    if (!model_reserve(m, spec->nbody, e)) return NULL;
     bool good;
     switch (spec->generator) {
     case MODEL_RING: good = add_ring(m, &x, e); break;

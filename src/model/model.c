@@ -2,6 +2,7 @@
 #include "model/model.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/check.h"
@@ -84,6 +85,18 @@ static const char *joint_fault(const struct body_def *b)
 }
 
 /* Parents first: every sweep of the algorithms relies on it, and so no tree has a cycle. */
+bool model_reserve(struct model *m, int n, struct err *e)
+{
+    /* With the bodies go their five index tables (model_finish). */
+    const size_t bytes = size_product((size_t)n, sizeof(struct body_def) + 5 * sizeof(int));
+    char what[64];
+    snprintf(what, sizeof what, "a model of %d bodies", n);
+    if (!size_in_memory(bytes, m->file ? m->file : "", 0, what, e)) return false;
+    m->body_room = n;
+    m->body = TAKE(m->arena, n, struct body_def);
+    return true;
+}
+
 int model_add_body(struct model *m, const struct body_def *def, struct err *e)
 {
     const char *fault = joint_fault(def);

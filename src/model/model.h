@@ -103,6 +103,10 @@ enum { MODEL_MAX_BODIES = 1 << 27, MODEL_MAX_ROWS = 32768 };
  * messages. */
 struct model *model_begin(struct arena *a, const char *file);
 
+/* model_reserve: room for `n` bodies, no more: what a generator knows beforehand. Returns false
+ * with ERR_CONFIG when this computer has not that much memory. */
+bool model_reserve(struct model *m, int n, struct err *e);
+
 /* model_add_body: append *def (copied). Returns its index; -1 with *e set when parent, axis or
  * placement make no sense. A zero `placement.quat` means the identity. */
 int model_add_body(struct model *m, const struct body_def *def, struct err *e);

@@ -72,27 +72,6 @@ static void ports_make(struct net *n, const struct machine_spec *m)
     }
 }
 
-/* Statistics of each resource: who it is (a node's port, or a link from router to router), then
- * what passes. Only on demand: it costs memory in proportion to the machine. */
-static void loads_make(struct net *n)
-{
-    n->load = TAKE(n->arena, n->nresource, struct link_load);
-    for (int i = 0; i < n->nresource; i++) {
-        struct link_load *l = &n->load[i];
-        int port;
-        l->from = l->to = l->node = -1;
-        if (net_is_injection(n, i)) {
-            l->node = i;
-            l->to = topology_router_of(n->topology, i);
-        } else if (net_is_ejection(n, i)) {
-            l->node = i - n->nnode - n->nlink;
-            l->from = topology_router_of(n->topology, l->node);
-        } else {
-            topology_link_ends(n->topology, i - n->nnode, &l->from, &l->to, &port);
-        }
-    }
-}
-
 /* Resources are numbered in an int: two ports for each node and every link. */
 static bool sizes_fit(const struct topology *t, struct err *e)
 {
@@ -156,7 +135,9 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
      * waits for an answer, and another processor of the node may come in between. */
     n->port_private =
         software_eager_most(&m->software) == INT64_MAX && t->spec->processors_per_node == 1;
-    if (want_links) loads_make(n);
+    /* Zero, and so no memory of the computer until something passes: a machine of a few bytes of
+     * text has 10^8 links. */
+    if (want_links) n->load = TAKE(a, n->nresource, struct link_load);
     return n->type->create(n, e) ? n : NULL;
 }
 
@@ -217,10 +198,4 @@ bool net_deadlock(const struct net *n, char *text, int size)
 {
     if (n->in_flight == 0 || !n->type->deadlock) return false;
     return n->type->deadlock(n, text, size);
-}
-
-const struct link_load *net_links(const struct net *n, int *nlink)
-{
-    *nlink = n->load ? n->nresource : 0;
-    return n->load;
 }

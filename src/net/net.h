@@ -118,7 +118,14 @@ bool net_ask_others(struct net *n, net_others_fn *others, void *context);
  * bytes) then names the cycle of links. */
 bool net_deadlock(const struct net *n, char *text, int size);
 
-/* net_links: the loads recorded so far, (*nlink) entries in the arena; 0 when not recorded. */
-const struct link_load *net_links(const struct net *n, int *nlink);
+/* net_links: the loads recorded so far, as a list of *nlink entries in `a`: injection ports, links,
+ * ejection ports. Of a network with more than NET_LINKS_WHOLE of them only those that something
+ * passed. NULL and 0 when not recorded. */
+enum { NET_LINKS_WHOLE = 1 << 21 };
+struct link_load *net_links(const struct net *n, struct arena *a, int *nlink);
+
+/* net_port_load: the account of the injection port of `node`, for processes that share a run; NULL
+ * when not recorded. Its from, to and node are not set. */
+struct link_load *net_port_load(struct net *n, int node);
 
 #endif

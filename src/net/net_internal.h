@@ -66,7 +66,7 @@ struct net {
     /* messages of one node are handed over in the order of their ready times */
     bool port_private;
     int64_t in_flight;      /* messages accepted and not yet delivered */
-    struct link_load *load; /* (nresource), NULL unless wanted */
+    struct link_load *load; /* (nresource), NULL unless wanted; who each is: net_links */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
     struct net_hold *hold;  /* (nresource) with path */
     void *state;            /* of the level */

@@ -145,14 +145,14 @@ static void replay_make(struct replay *r, struct arena *a)
     initial_make(r, a);
 }
 
-static void replay_run(struct replay *r)
+static void replay_run(struct replay *r, struct arena *a)
 {
     struct traffic_result *out = r->result;
     if (r->ninitial > 0) start_at(r, r->initial[r->next_initial++]);
     while (sim_step(r->sim)) continue;
     out->events = sim_events(r->sim);
     out->digest = sim_digest(r->sim);
-    out->link = net_links(r->net, &out->nlink);
+    out->link = net_links(r->net, a, &out->nlink);
     /* No event left and messages missing: the net names its cycle, or the list itself is
      * circular. */
     out->deadlock = out->arrived < r->q->nmessage;
@@ -172,7 +172,7 @@ bool traffic_run(const struct traffic *q, const struct machine_spec *m, const st
     r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
     if (r.net) {
         replay_make(&r, a);
-        replay_run(&r);
+        replay_run(&r, a);
     }
     sim_destroy(r.sim);
     return r.net != NULL;

@@ -10,6 +10,7 @@
 #include "plan/data_dir.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@
 #include "base/text.h"
 #include "plan/plan.h"
 
-/* Longer paths are not found; more files of one kind are not listed. */
+/* Longer paths of the folders of data are not found; more files of one kind are not listed. */
 enum { PATH_LENGTH = 1024, MAX_NAMES = 4096 };
 
 /* Whether `dir` is such a folder: it has both. */
@@ -108,12 +109,16 @@ const char *data_dir_stem(const char *path, struct arena *a)
 static const char *probe(const char *dir, const char *what, const char *name, const char *ending,
                          struct arena *a)
 {
-    char path[2 * PATH_LENGTH];
+    struct text path = {0};
     /* Both slashes only where something stands before them. */
-    int n = snprintf(path, sizeof path, "%s%s%s%s%s%s", dir, dir[0] != '\0' ? "/" : "", what,
-                     what[0] != '\0' ? "/" : "", name, ending);
-    if (n >= (int)sizeof path || access(path, F_OK) != 0) return NULL;
-    return arena_text(a, path);
+    text_add(&path, "%s%s%s%s%s%s", dir, dir[0] != '\0' ? "/" : "", what,
+             what[0] != '\0' ? "/" : "", name, ending);
+    const char *found = access(path.s, F_OK) == 0 ? arena_text(a, path.s) : NULL;
+    /* For who tells why nothing was found. */
+    const int reason = errno;
+    text_free(&path);
+    errno = reason;
+    return found;
 }
 
 /* The name of a file in WHAT/ that `name` may have meant, NULL when none is near; `name` itself
@@ -130,10 +135,16 @@ static const char *nearest_name(const char *what, const char *name, struct arena
 static const char *find_path(const char *what, const char *name, const char *near, struct arena *a,
                              struct err *e)
 {
+    errno = 0;
     const char *path = name[0] == '/' || near == NULL ? NULL : probe(near, "", name, "", a);
     if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0'))
         path = probe("", "", name, "", a);
     if (path != NULL) return path;
+    /* Too long, or a folder that may not be entered: "no file" would be wrong. */
+    if (errno != 0 && errno != ENOENT && errno != ENOTDIR) {
+        err_set(e, ERR_NO_INPUT, "cannot open '%s': %s", name, strerror(errno));
+        return NULL;
+    }
     /* Perhaps the name of a shipped file was meant. */
     const char *meant = nearest_name(what, data_dir_stem(name, a), a);
     if (meant == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);

@@ -71,6 +71,7 @@ struct program_run {
 struct program_estimate {
     double messages, bytes, flops; /* sent and computed, all ranks */
     double rank_bytes;      /* host memory per rank, workspace and messages in flight */
+    double scene_bytes;     /* host memory of the model, its references and serial codes: at most */
 };
 
 /* What a run leaves out, collected by program_leave_out. */

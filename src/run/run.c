@@ -212,6 +212,19 @@ static void describe(void *context, char *buffer, int size)
              (unsigned long long)s->seed, s->rep);
 }
 
+/* What the stack of a rank is assumed to touch: two pages; one at least. RANK_BYTES: the structs of
+ * a rank and of its messages. */
+enum { STACK_PAGES_BYTES = 2 * 4096, STACK_LEAST_BYTES = 4096, RANK_BYTES = 1400 };
+
+/* Stacks of ranks are memory that is certain to be used. */
+static bool ranks_fit(const struct run_spec *spec, const struct run_order *order, struct err *e)
+{
+    char what[64];
+    if (order && order->hosts) return true; /* each process has a part of them */
+    snprintf(what, sizeof what, "a run on %d ranks", spec->nrank);
+    return size_in_memory(size_product((size_t)spec->nrank, STACK_LEAST_BYTES), "", 0, what, e);
+}
+
 bool run_sharing(const struct run_spec *spec, const struct run_order *order,
                  struct run_cache *cache, struct arena *a, struct run_result *out, struct err *e)
 {
@@ -228,7 +241,8 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
     struct arena *own = arena_create(), *scratch = arena_create();
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
-    const bool ok = run_open(spec, order, cache, own, &r, e) && attempts(&r, scratch, a, out, e);
+    const bool ok = ranks_fit(spec, order, e) && run_open(spec, order, cache, own, &r, e) &&
+                    attempts(&r, scratch, a, out, e);
     if (ok && chief(&r)) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;
@@ -255,9 +269,6 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 }
 
 /* --- before it runs --------------------------------------------------------------------------- */
-
-/* What the stack of a rank is assumed to touch: two pages. */
-enum { STACK_PAGES_BYTES = 2 * 4096 };
 
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
 {
@@ -287,7 +298,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         const double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
         out->host_bytes =
-            spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + 1400.0) + (double)out->nbody * 1200.0;
+            spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + RANK_BYTES) + k.scene_bytes;
     }
     run_close(&r);
     run_cache_destroy(cache);

@@ -4,7 +4,10 @@
  * own, as a user can do something about most of them. */
 #include "store/connection.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/text.h"
 #include "store/rows.h"
@@ -15,6 +18,25 @@ static const char *const statement_sql[] = {
     STORE_STATEMENTS(X)
 #undef X
 };
+
+/* Why the file cannot be opened. SQLite tells of the last thing that it tried, which was a log that
+ * is not there or a folder that it looked for: what the user can mend is found out here again. */
+static void cannot_open(const struct store *s, int system, const char *text, struct err *e)
+{
+    const int file = open(s->path, (s->writable ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK);
+    int reason = file < 0 ? errno : 0;
+    if (file >= 0) close(file);
+    /* A writer makes a log beside the file. */
+    struct text folder = {0};
+    const char *slash = strrchr(s->path, '/');
+    text_add(&folder, "%.*s", slash != NULL ? (int)(slash - s->path) + 1 : 2,
+             slash != NULL ? s->path : "./");
+    if (reason == 0 && s->writable && access(folder.s, W_OK | X_OK) != 0) reason = errno;
+    text_free(&folder);
+    if (reason == 0) reason = system;
+    err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s", s->path,
+            reason ? strerror(reason) : text);
+}
 
 /* What SQLite found, as a sentence for a user: what happened, to which file, and what can be
  * done. The kind decides the exit status. */
@@ -35,8 +57,8 @@ bool store_failed(struct store *s, struct err *e)
     case SQLITE_FULL: return err_set(e, ERR_IO, "no space left on the disk of database %s", path);
     case SQLITE_READONLY: return err_set(e, ERR_IO, "database %s is read-only", path);
     case SQLITE_CANTOPEN:
-        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s",
-                       path, system ? strerror(system) : text);
+        cannot_open(s, system, text, e);
+        return false;
     case SQLITE_IOERR:
         return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path,
                        system ? strerror(system) : text);

@@ -123,23 +123,45 @@ static bool prepare_reader(struct store *s, struct err *e)
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
+/* Whether SQLite takes a path that long: from the root, and with the ending of its log (mxPathname
+ * of its os_unix.c, within what the system takes). */
+static bool path_fits(const char *path, enum err_kind kind, struct err *e)
+{
+    const sqlite3_vfs *system = sqlite3_vfs_find(NULL);
+    char *folder = publish_folder(path), *root = realpath(folder, NULL);
+    const char *name = strrchr(path, '/');
+    const size_t most = system != NULL ? (size_t)system->mxPathname - strlen("-journal") : SIZE_MAX,
+                 length = strlen(root != NULL ? root : folder) + 1 +
+                          strlen(name != NULL ? name + 1 : path);
+    free(root);
+    free(folder);
+    return length <= most ||
+           err_set(e, kind, "cannot open database %s: its path has %zu characters from the root, "
+                            "SQLite takes at most %zu",
+                   path, length, most);
+}
+
 /* Mistakes in the path that SQLite would report vaguely, before it is called. *exists when there
  * is a file. */
 static bool check_path(const char *path, enum store_mode mode, bool *exists, struct err *e)
 {
     struct stat info;
+    const enum err_kind kind = mode == STORE_READ ? ERR_NO_INPUT : ERR_CREATE;
     *exists = stat(path, &info) == 0;
     if (*exists && S_ISDIR(info.st_mode))
         return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA,
                        "%s is a folder, not a database", path);
+    if (!*exists && errno != ENOENT && errno != ENOTDIR)
+        return err_set(e, kind, "cannot open database %s: %s", path, strerror(errno));
     if (!*exists && mode == STORE_READ)
         return err_set(e, ERR_NO_INPUT, "there is no database %s; `mimdsim run` makes one", path);
-    if (*exists) return true;
+    if (*exists) return path_fits(path, kind, e);
     char *folder = publish_folder(path);
     bool writable = access(folder, W_OK | X_OK) == 0;
     free(folder);
     /* access has set errno */
-    return writable || err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
+    if (!writable) err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
+    return writable && path_fits(path, kind, e);
 }
 
 /* A database in WAL mode in a folder that cannot be written opens only when declared unchanging. */

@@ -85,15 +85,15 @@ static bool send_part(struct world *w, const uint64_t *digest)
 {
     const struct hosts *h = w->load->hosts;
     const size_t n = (size_t)w->nown, row = (size_t)w->nstage + 1;
-    int nlink;
-    const struct link_load *load = net_links(w->net, &nlink);
     bool ok =
         hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first, n * sizeof(int64_t)) &&
         hosts_copy_out(h, 0, TAG_DIGESTS, digest, n * sizeof *digest) &&
         hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
                        n * row * sizeof *w->result->stage);
-    for (int i = w->first; ok && nlink > 0 && i < w->first + w->nown; i++)
-        ok = hosts_copy_out(h, 0, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
+    for (int i = w->first; ok && i < w->first + w->nown; i++) {
+        const struct link_load *load = net_port_load(w->net, w->placement.node[i]);
+        ok = load == NULL || hosts_copy_out(h, 0, TAG_LOADS, load, sizeof *load);
+    }
     return ok && send_outputs(w);
 }
 
@@ -102,18 +102,19 @@ static bool receive_part(struct world *w, int from, uint64_t *digest)
 {
     const struct hosts *h = w->load->hosts;
     const size_t row = (size_t)w->nstage + 1;
-    int first, end, nlink;
+    int first, end;
     team_part(w->load, from, &first, &end);
     const size_t n = (size_t)(end - first);
-    /* The world's own loads, which copy_links copies later. */
-    struct link_load *load = (struct link_load *)net_links(w->net, &nlink);
     bool ok =
         hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first, n * sizeof(int64_t)) &&
         hosts_copy_in(h, from, TAG_DIGESTS, digest + first, n * sizeof *digest) &&
         hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
                       n * row * sizeof *w->result->stage);
-    for (int i = first; ok && nlink > 0 && i < end; i++)
-        ok = hosts_copy_in(h, from, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
+    /* The network's own, of which copy_links makes the result's. */
+    for (int i = first; ok && i < end; i++) {
+        struct link_load *load = net_port_load(w->net, w->placement.node[i]);
+        ok = load == NULL || hosts_copy_in(h, from, TAG_LOADS, load, sizeof *load);
+    }
     return ok && receive_outputs(w, from);
 }
 

@@ -192,10 +192,7 @@ static void trace_path(struct world *w)
 static void copy_links(struct world *w)
 {
     int n;
-    const struct link_load *l = net_links(w->net, &n);
-    if (!n) return;
-    w->result->link = TAKE(w->arena, n, struct link_load);
-    memcpy(w->result->link, l, (size_t)n * sizeof *l);
+    w->result->link = net_links(w->net, w->arena, &n);
     w->result->nlink = n;
 }
 

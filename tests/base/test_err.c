@@ -51,6 +51,44 @@ static void endless_texts_are_cut(void **state)
     assert_int_equal(strlen(e.text), sizeof e.text - 1);
 }
 
+/* What a user needs of "cannot open PATH: REASON" are the ends of the path, and the reason. */
+static void a_long_path_keeps_its_ends_and_its_reason(void **state)
+{
+    (void)state;
+    char path[4000] = "/data/ada/";
+    memset(path + 10, 'd', sizeof path - 10);
+    strcpy(path + sizeof path - 8, "/my.db");
+    struct err e = {0};
+    err_set_at(&e, ERR_DATA, path, 1, "cannot open %s: %s", path, "Read-only file system");
+    assert_ptr_equal(strstr(e.text, "cannot open /data/ada/ddd"), e.text);
+    assert_non_null(strstr(e.text, "ddd ... ddd"));
+    assert_non_null(strstr(e.text, "/my.db: Read-only file system"));
+    assert_ptr_equal(strstr(e.file, "/data/ada/ddd"), e.file);
+    assert_string_equal(e.file + strlen(e.file) - 6, "/my.db");
+    err_in(&e, path);
+    assert_ptr_equal(strstr(e.text, "/data/ada/ddd"), e.text);
+    assert_non_null(strstr(e.text, "/my.db: Read-only file system"));
+}
+
+/* A text of one size too long for each place of the cut: no half of a character is left. */
+static void characters_stay_whole(void **state)
+{
+    (void)state;
+    char text[2000] = "";
+    for (int i = 0; i < 4; i++) {
+        memset(text, 'x', sizeof text);
+        for (size_t at = (size_t)i; at + 5 < sizeof text; at += 4)
+            memcpy(text + at, "\xe2\x82\xacx", 4);
+        text[sizeof text - 5] = '\0';
+        struct err e = {0};
+        err_set(&e, ERR_DATA, "%s", text);
+        const char *gap = strstr(e.text, " ... ");
+        assert_non_null(gap);
+        assert_true((gap[-1] & 0xC0) != 0xC0 && (gap[5] & 0xC0) != 0x80);
+        assert_true((gap[-1] & 0xC0) != 0x80 || (gap[-3] & 0xF0) == 0xE0);
+    }
+}
+
 static void exit_statuses_are_those_of_the_manual(void **state)
 {
     (void)state;
@@ -118,6 +156,8 @@ int main(void)
         cmocka_unit_test(the_first_cause_wins),
         cmocka_unit_test(context_comes_in_front),
         cmocka_unit_test(endless_texts_are_cut),
+        cmocka_unit_test(a_long_path_keeps_its_ends_and_its_reason),
+        cmocka_unit_test(characters_stay_whole),
         cmocka_unit_test(exit_statuses_are_those_of_the_manual),
         cmocka_unit_test(an_error_is_printed_with_the_place_it_has),
     };

@@ -34,9 +34,9 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
 void fuzz_allow(double seconds);
 double fuzz_allowed(void);
 
-/* fuzz_whole: whether the next inputs are files of the corpus, of which everything is tried, however
- * long it takes; fuzz_is_whole tells. Otherwise, and under libFuzzer, a harness may try a part that
- * follows from the input. */
+/* fuzz_whole: whether the next inputs are files of the corpus, of which everything is tried,
+ * however long it takes; fuzz_is_whole tells. Otherwise, and under libFuzzer, a harness may try a
+ * part that follows from the input. */
 void fuzz_whole(bool whole);
 bool fuzz_is_whole(void);
 

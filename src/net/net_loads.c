@@ -1,0 +1,51 @@
+/* net_loads.c - what passed each port and link of a network, as a list (net.h).
+ *
+ * The levels count by number of resource (net_account) and leave untouched what nothing passes. Who
+ * a resource is, is only found out here: of 10^8 links, which a machine file of a few bytes may
+ * have, a run on 16 ranks uses a few hundred, and a list of all of them would take 10 GB. */
+#include "net/net.h"
+#include "net/net_internal.h"
+
+/* Whether anything came by; queueing and busy times only grow with messages or their packets. */
+static bool used(const struct link_load *l)
+{
+    return l->messages != 0 || l->bytes != 0 || l->busy_ps != 0 || l->queue_ps != 0;
+}
+
+/* A node's port, or a link from router to router. */
+static void name_load(const struct net *n, int resource, struct link_load *l)
+{
+    int port;
+    l->from = l->to = l->node = -1;
+    if (net_is_injection(n, resource)) {
+        l->node = resource;
+        l->to = topology_router_of(n->topology, resource);
+    } else if (net_is_ejection(n, resource)) {
+        l->node = resource - n->nnode - n->nlink;
+        l->from = topology_router_of(n->topology, l->node);
+    } else {
+        topology_link_ends(n->topology, resource - n->nnode, &l->from, &l->to, &port);
+    }
+}
+
+struct link_load *net_links(const struct net *n, struct arena *a, int *nlink)
+{
+    *nlink = 0;
+    if (!n->load) return NULL;
+    const bool whole = n->nresource <= NET_LINKS_WHOLE;
+    /* Counted first: an arena gives nothing back. */
+    int count = whole ? n->nresource : 0;
+    for (int i = 0; !whole && i < n->nresource; i++) count += used(&n->load[i]);
+    struct link_load *list = TAKE(a, count, struct link_load);
+    for (int i = 0; i < n->nresource; i++) {
+        if (!whole && !used(&n->load[i])) continue;
+        list[*nlink] = n->load[i];
+        name_load(n, i, &list[(*nlink)++]);
+    }
+    return list;
+}
+
+struct link_load *net_port_load(struct net *n, int node)
+{
+    return n->load ? &n->load[node] : NULL;
+}

@@ -1,0 +1,119 @@
+#!/usr/bin/env bats
+# limits.bats - few bytes that ask for much, long paths, folders that cannot be written: what it takes is small, or refused by name.
+
+load helper
+
+sanitized() { mimdsim --version | grep -q sanitizers; } # they have memory of their own
+
+# A scenario on a machine of 2^24 processors and 10^8 links and ports.
+huge() {
+    printf '%s\n' 'schema_version: 1' 'question: q' 'machine: {name: paragon, topology.dims: [4096, 4096]}' 'kernel: dynamics' \
+        'model: {generator: serial-chain}' 'n: 16' 'ranks: 16' 'level: loggp' "record: {links: ${1:-false}}" >huge.yaml
+}
+
+@test "a run on a few of very many processors takes no memory for the others" {
+    for links in false true; do
+        huge $links
+        for level in loggp link packet flit; do
+            works mimdsim run huge.yaml -o "$links.db" --quiet --set level=$level --set machine.network.buffer=2000
+        done
+        sql_is "$links.db" "SELECT count(*) FROM run WHERE status = 'ok'" 4
+        sanitized || sql_is "$links.db" 'SELECT max(host_peak_bytes) < 50000000 FROM run' 1
+    done
+    # what was used, and nothing else; each link has two ends or a node
+    sql_is true.db 'SELECT count(DISTINCT links), min(links) BETWEEN 32 AND 200 FROM run WHERE level <> "loggp"' '1|1'
+    sql_is true.db 'SELECT count(*) FROM link_load WHERE messages = 0 OR (node IS NULL) <> (from_router IS NOT NULL AND to_router IS NOT NULL)' 0
+    sql_is true.db "SELECT run_id FROM link_load l JOIN run r ON r.id = run_id GROUP BY run_id
+                    HAVING sum(l.messages) FILTER (WHERE node IS NOT NULL AND from_router IS NULL) <> max(r.messages)" ''
+}
+
+@test "bodies that cannot fit into memory are refused before any is made" {
+    huge
+    for verb in explain 'run -o x.db'; do
+        # shellcheck disable=SC2086
+        run --separate-stderr -- timeout 20 "$MIMDSIM" $verb huge.yaml --machine ideal --set n=130000000 --set machine.topology.dims='[16]'
+        [ "$status" -eq 78 ] || { show; return 1; }
+        stderr_says 'bodies would take'
+        stderr_says 'of memory; this computer has'
+    done
+    sanitized || sql_is x.db 'SELECT status, host_peak_bytes < 50000000 FROM run' 'failed|1'
+}
+
+# deep: make and enter a folder whose path is longer than 2,000 characters.
+deep() {
+    local name i
+    name=$(printf 'd%.0s' {1..200})
+    for i in 1 2 3 4 5 6 7 8 9 10 11; do mkdir "$name" && cd "$name" || return; done
+}
+
+@test "files of a path of 2,000 characters are read and written; a database there is refused with both numbers" {
+    top=$PWD
+    deep
+    printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'kernel: barrier' 'ranks: 2' >small.yaml
+    far=$PWD
+    cd "$top"
+    works mimdsim run "$far/small.yaml" -o near.db --quiet
+    works mimdsim check "$far/small.yaml"
+    works mimdsim explain "$far/small.yaml"
+    works mimdsim report near.db --dir "$far/figures" --quiet
+    for command in 'run small.yaml' 'query x.db SELECT+1' 'report x.db' 'merge x.db'; do
+        # shellcheck disable=SC2086
+        set -- $command
+        case $1 in
+        run) fails_with 73 mimdsim run "$far/small.yaml" -o "$far/x.db" ;;
+        merge) fails_with 73 mimdsim merge "$far/x.db" near.db ;;
+        *) cp near.db "$far/x.db"; fails_with 66 mimdsim "$1" "$far/x.db" ${3:+"$3"}; rm "$far/x.db" ;;
+        esac
+        stderr_says "/x.db: its path has $((${#far} + 5)) characters from the root, SQLite takes at most 504"
+        [ ! -e "$far/x.db" ]
+    done
+    cd "$far"
+    fails_with 73 mimdsim run small.yaml -o x.db
+    stderr_says "x.db: its path has $((${#far} + 5)) characters"
+    cd "$top"
+    # the ends of the path and the reason remain of a message
+    fails_with 66 mimdsim run "$far/smal.yaml"
+    stderr_says "no file '$top/ddd"
+    stderr_says "ddd/smal.yaml'"
+    # longer than any path of the system
+    for file in "$far$far$far/x.yaml" "$far$far$far/x.json" "$far$far$far/x.db"; do
+        case $file in
+        *.yaml) fails_with 66 mimdsim run "$file" ;;
+        *.json) fails_with 66 mimdsim netcheck "$file" ;;
+        *) fails_with 66 mimdsim report "$file" ;;
+        esac
+        stderr_says 'File name too long'
+    done
+}
+
+@test "on a file system that cannot be written every verb that writes says so" {
+    unshare -rm true 2>/dev/null || skip 'no file system can be mounted here'
+    printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'kernel: barrier' 'ranks: 2' >small.yaml
+    works mimdsim run small.yaml -o a.db --quiet
+    mkdir mnt
+    cat >inside.sh <<'X'
+set -e
+mount -t tmpfs none mnt
+cp a.db small.yaml mnt
+mount -o remount,ro mnt
+try() {
+    status=0
+    "$MIMDSIM" "$@" >out 2>err </dev/null || status=$?
+    echo "$status $* $(head -n 1 err)"
+}
+try run small.yaml -o mnt/new.db
+try run small.yaml -o mnt/a.db
+try merge mnt/a.db a.db
+try merge mnt/new.db a.db
+try claims mnt/a.db
+try report a.db --dir mnt/figures
+try query mnt/a.db 'SELECT count(*) FROM run'
+X
+    run -- unshare -rm bash inside.sh
+    [ "$status" -eq 0 ] || { show; return 1; }
+    [ "${#lines[@]}" -eq 7 ]
+    for i in 0 1 2 3 4 5; do
+        [[ ${lines[i]} == 73\ *': Read-only file system' ]] || { echo "${lines[i]}"; return 1; }
+    done
+    [ "${lines[6]}" = '0 query mnt/a.db SELECT count(*) FROM run ' ]
+}
