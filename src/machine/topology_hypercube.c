@@ -107,6 +107,15 @@ static int hypercube_rate_dim(const struct topology *t, int link)
     return link >= g->ndim << g->ndim ? 1 : 0; /* dim_bandwidth[0]: cube links, [1]: Xpress links */
 }
 
+/* Half of the routers have a cable across any dimension, and as many Xpress links lie beside; those
+ * to the opposite corner all cross (the folded hypercube's 2^n). */
+static int64_t hypercube_bisection(const struct topology *t)
+{
+    const struct hypercube *g = t->state;
+    int64_t half = t->nrouter / 2;
+    return half * (1 + g->doubled + g->diagonal);
+}
+
 const struct topology_type topology_hypercube = {
     .name = "hypercube",
     .create = hypercube_create,
@@ -115,4 +124,5 @@ const struct topology_type topology_hypercube = {
     .distance = hypercube_distance,
     .ends = hypercube_ends,
     .rate_dim = hypercube_rate_dim,
+    .bisection = hypercube_bisection,
 };

@@ -137,6 +137,34 @@ static void hyperx_ends(const struct topology *t, int link, int *from, int *to, 
     *port = g->port[d] + (x - (x > y)) * g->bundle[d] + cable;
 }
 
+/* Cables that leave m routers of a HyperX of these n dims (rising, `size` routers), where the m come
+ * first in the order whose slowest coordinate is the shortest dimension: whole layers and a part of
+ * one, which is cut in turn. By Lindsey's theorem (Amer. Math. Monthly 71, 1964) no other m routers
+ * have fewer. */
+static int64_t layers_cut(const int *dims, int n, int64_t size, int64_t m)
+{
+    if (n == 0 || m == 0 || m == size) return 0;
+    int64_t layer = size / dims[0], full = m / layer, part = m % layer;
+    /* A place of the layer is in full or in full + 1 layers of the half. */
+    int64_t across =
+        part * (full + 1) * (dims[0] - full - 1) + (layer - part) * full * (dims[0] - full);
+    return across + layers_cut(dims + 1, n - 1, layer, part);
+}
+
+/* The theorem is of one number of cables everywhere. */
+static int64_t hyperx_bisection(const struct topology *t)
+{
+    const struct hyperx *g = t->state;
+    int dims[MACHINE_MAX_DIMS];
+    for (int d = 0; d < g->ndim; d++) {
+        if (g->bundle[d] != g->bundle[0]) return -1;
+        int i = d;
+        for (; i > 0 && dims[i - 1] > g->radix[d]; i--) dims[i] = dims[i - 1];
+        dims[i] = g->radix[d];
+    }
+    return g->bundle[0] * layers_cut(dims, g->ndim, t->nrouter, t->nrouter / 2);
+}
+
 const struct topology_type topology_hyperx = {
     .name = "hyperx",
     .create = hyperx_create,
@@ -145,4 +173,5 @@ const struct topology_type topology_hyperx = {
     .distance = hyperx_distance,
     .ends = hyperx_ends,
     .rate_dim = hyperx_rate_dim,
+    .bisection = hyperx_bisection,
 };

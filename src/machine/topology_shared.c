@@ -109,6 +109,12 @@ static void full_mesh_ends(const struct topology *t, int link, int *from, int *t
     *port = *from - (*from > *to);
 }
 
+/* Every router of one half has a cable to every one of the other. */
+static int64_t full_mesh_bisection(const struct topology *t)
+{
+    return (int64_t)(t->nrouter / 2) * (t->nrouter - t->nrouter / 2);
+}
+
 const struct topology_type topology_crossbar = {
     .name = "crossbar",
     .create = crossbar_create,
@@ -132,4 +138,5 @@ const struct topology_type topology_full_mesh = {
     .next = full_mesh_next,
     .distance = full_mesh_distance,
     .ends = full_mesh_ends,
+    .bisection = full_mesh_bisection,
 };

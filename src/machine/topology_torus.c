@@ -195,6 +195,29 @@ static void torus_ends(const struct topology *t, int link, int *from, int *to, i
     *port = 2 * d + (down ? 0 : 1); /* going down one comes from the + neighbour */
 }
 
+/* With radices in falling order k_1 >= k_2 >= ..., C_i the product of those behind k_i, and e the
+ * first of them that is even (the last if none is), a mesh is cut at sum C_i, i = 1 .. e, and a
+ * torus at twice that (Azizoglu and Egecioglu, "The bisection width and the isoperimetric number of
+ * arrays", Discrete Appl. Math. 138, 2004; of generalised cylinders, 2003). */
+static int64_t torus_bisection(const struct topology *t)
+{
+    const struct torus *g = t->state;
+    unsigned radix[MACHINE_MAX_DIMS];
+    int64_t rest = t->nrouter, cables = 0;
+    for (int d = 0; d < g->ndim; d++) {
+        int i = d;
+        for (; i > 0 && radix[i - 1] < g->radix[d]; i--) radix[i] = radix[i - 1];
+        radix[i] = g->radix[d];
+    }
+    /* Across the longest dimension; of an odd one a layer is left, which is cut in turn. */
+    for (int d = 0; d < g->ndim && radix[d] > 1; d++) {
+        rest /= radix[d];
+        cables += rest;
+        if (radix[d] % 2 == 0) break;
+    }
+    return g->wraps ? 2 * cables : cables;
+}
+
 /* One set of functions for both: g->wraps is all the difference. */
 const struct topology_type topology_torus = {
     .name = "torus",
@@ -204,6 +227,7 @@ const struct topology_type topology_torus = {
     .distance = torus_distance,
     .ends = torus_ends,
     .rate_dim = torus_rate_dim,
+    .bisection = torus_bisection,
 };
 const struct topology_type topology_mesh = {
     .name = "mesh",
@@ -213,4 +237,5 @@ const struct topology_type topology_mesh = {
     .distance = torus_distance,
     .ends = torus_ends,
     .rate_dim = torus_rate_dim,
+    .bisection = torus_bisection,
 };

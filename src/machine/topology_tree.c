@@ -129,6 +129,14 @@ static void tree_ends(const struct topology *t, int link, int *from, int *to, in
     *port = down ? g->k + up : digit(g, w, l);
 }
 
+/* Every switch of the highest level has as many subtrees in one half as in the other: half of its
+ * cables. With an odd arity a subtree is cut, too, for which there is no form here. */
+static int64_t tree_bisection(const struct topology *t)
+{
+    const struct tree *g = t->state;
+    return g->n > 1 && g->k % 2 == 0 ? t->nnode / 2 : -1;
+}
+
 const struct topology_type topology_fat_tree = {
     .name = "fat-tree",
     .create = tree_create,
@@ -137,4 +145,5 @@ const struct topology_type topology_fat_tree = {
     .distance = tree_distance,
     .ends = tree_ends,
     .rate_dim = tree_rate_dim,
+    .bisection = tree_bisection,
 };
