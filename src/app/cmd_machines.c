@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/flag.h"
+#include "app/machine_topology.h"
 #include "app/parameters.h"
 #include "app/verb.h"
 #include "base/json.h"
@@ -14,7 +16,8 @@
 static const char doc[] =
     "List the machines; with NAME, show one with the source of each value.\n\n"
     "Example: mimdsim machines t3e-300\n"
-    "         mimdsim machines --compare t3e-300 t3e-300-mpt\n";
+    "         mimdsim machines --compare t3e-300 t3e-300-mpt\n"
+    "         mimdsim machines what-if-dragonfly what-if-hyperx --topology\n";
 
 /* A machine, and where each of its values comes from. */
 struct shown {
@@ -244,8 +247,10 @@ static int show(const struct common *c, struct arena *a)
 int cmd_machines(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE, "[NAME]\n--compare NAME OTHER", doc, 0,
-                 2);
+    /* Any number of networks side by side, but one machine or two in full. */
+    bool topology = take_flag(&argc, argv, "--topology");
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE | TAKES_DIR,
+                 "[NAME]\n--compare NAME OTHER\nNAME... --topology", doc, 0, topology ? 64 : 2);
     /* argp counts arguments without knowing --compare. */
     if (c.compare && c.narg != 2) {
         struct err e;
@@ -261,7 +266,7 @@ int cmd_machines(int argc, char **argv)
         return common_fail(&c, &e);
     }
     struct arena *a = arena_create();
-    int status = c.narg ? show(&c, a) : list_machines(&c, a);
+    int status = topology ? machine_topology(&c, a) : c.narg ? show(&c, a) : list_machines(&c, a);
     arena_destroy(a);
     return status;
 }

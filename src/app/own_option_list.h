@@ -22,6 +22,7 @@
     X("run", "bands-only", NULL, "with --uncertainty: without the shares of the variance")         \
     X("run", "columns", "NAME,...", "columns of the table, or all")                                \
     X("run", "csv", NULL, "print all columns with commas, for programs")                           \
+    X("machines", "topology", NULL, "the networks: distances, bisection, costs; and pictures")     \
     X("plan", "shards", "N", "also the shard that each run belongs to")                            \
     X("plan", "format", "FORMAT", "lines (default) or json")                                       \
     X("paper", "paper-only", NULL, "without the five scenes of accuracy, stability and omissions") \

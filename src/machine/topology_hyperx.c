@@ -137,10 +137,10 @@ static void hyperx_ends(const struct topology *t, int link, int *from, int *to, 
     *port = g->port[d] + (x - (x > y)) * g->bundle[d] + cable;
 }
 
-/* Cables that leave m routers of a HyperX of these n dims (rising, `size` routers), where the m come
- * first in the order whose slowest coordinate is the shortest dimension: whole layers and a part of
- * one, which is cut in turn. By Lindsey's theorem (Amer. Math. Monthly 71, 1964) no other m routers
- * have fewer. */
+/* Cables that leave m routers of a HyperX of these n dims (rising, `size` routers), where the m
+ * come first in the order whose slowest coordinate is the shortest dimension: whole layers and a
+ * part of one, which is cut in turn. By Lindsey's theorem (Amer. Math. Monthly 71, 1964) no other m
+ * routers have fewer. */
 static int64_t layers_cut(const int *dims, int n, int64_t size, int64_t m)
 {
     if (n == 0 || m == 0 || m == size) return 0;

@@ -34,7 +34,9 @@ const char *setting_key(const char *key)
 static const struct field *settable(const char *key, const struct field_table **table)
 {
     const struct field *f = field_find_full(key, table);
-    const bool title = f != NULL && f->label && strcmp(key, "label") != 0;
+    /* Prices are for people, too, but they are numbers. */
+    const bool title =
+        f != NULL && f->label && f->kind == FIELD_TEXT && strcmp(key, "label") != 0;
     return f == NULL || title || strcmp(key, "scenario") == 0 ? NULL : f;
 }
 

@@ -224,6 +224,13 @@ const char *machine_idle_unless_background(const struct run_spec *r)
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
 }
 
+/* Prices, powers and the floor plan. */
+const char *machine_idle_in_runs(const struct run_spec *r)
+{
+    (void)r;
+    return "no run depends on it; `mimdsim machines --topology` does";
+}
+
 const char *machine_idle_in_programs(const struct run_spec *r)
 {
     (void)r;

@@ -38,6 +38,7 @@ const char *machine_idle_unless_random(const struct run_spec *r);
 const char *machine_idle_unless_list(const struct run_spec *r);
 const char *machine_idle_at_loggp(const struct run_spec *r);
 const char *machine_idle_unless_background(const struct run_spec *r);
+const char *machine_idle_in_runs(const struct run_spec *r);
 const char *machine_idle_in_programs(const struct run_spec *r);
 const char *machine_idle_without_collectives(const struct run_spec *r);
 

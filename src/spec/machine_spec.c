@@ -34,6 +34,11 @@ static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
+/* A price or a power, 0 where the file states none. */
+#define PRICE(member)                                                                              \
+    .kind = FIELD_REAL, AT(price.member), .min = 0, .max = 1e12, .fallback = "0",            \
+    .label = true, .idle = machine_idle_in_runs
+
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
      .doc = "the name of its file"},
@@ -353,6 +358,20 @@ static const struct field fields[] = {
      AT(noise.background_bytes), .min = 1,
      .max = 1 << 30, .fallback = "1024 B", .idle = machine_idle_unless_background,
      .doc = "message size of these jobs"},
+
+    /* What a network costs: for `machines --topology` alone, so that no run depends on it. */
+    {.key = "price.router", PRICE(router), .doc = "of one router, in any currency"},
+    {.key = "price.port", PRICE(port), .doc = "of one port of a router"},
+    {.key = "price.cable", PRICE(cable), .doc = "of one cable, whatever its length"},
+    {.key = "price.metre", PRICE(metre), .doc = "of one metre of cable"},
+    {.key = "power.router", PRICE(router_power), .doc = "of one router [W]"},
+    {.key = "power.port", PRICE(port_power), .doc = "of one port of a router [W]"},
+    {.key = "floor.routers_per_rack", .kind = FIELD_INT, AT(price.rack_routers), .min = 0,
+     .max = 1 << 20, .fallback = "0", .label = true, .idle = machine_idle_in_runs,
+     .doc = "routers in a rack, for the lengths of cables; 0: lengths are not known"},
+    {.key = "floor.pitch", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(price.rack_pitch),
+     .min = 0, .max = 1e6, .fallback = "1 m", .label = true, .idle = machine_idle_in_runs,
+     .doc = "from one rack to the next, in rows of a square"},
 };
 
 const struct field_table machine_table = {

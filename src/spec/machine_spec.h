@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "spec/level_list.h"
+#include "spec/price_spec.h"
 #include "spec/software_spec.h"
 #include "spec/topology_list.h"
 
@@ -138,6 +139,7 @@ struct machine_spec {
     struct software_spec software;
     struct placement_spec placement;
     struct noise_spec noise;
+    struct price_spec price;
 };
 
 /* topology_has: whether a family has a trait (topology_list.h). topology_family_dims: how many

@@ -1,0 +1,75 @@
+#!/usr/bin/env bats
+# networks.bats - networks of machines before and while something runs on them: numbers, pictures, every family, bad ones.
+
+load helper
+
+# every_what_if: the names of the machines made for comparing networks.
+every_what_if() { (cd "$MIMDSIM_DATA/machines" && ls what-if-*.yaml) | sed 's/\.yaml$//'; }
+
+@test "a network's numbers, costs and picture" {
+    works mimdsim machines what-if-hyperx --topology --dir here
+    stdout_says "hyperx 8 x 8"
+    stdout_says "64, nodes 512, cables between routers 448"
+    stdout_says "128 cables, 3.2 TB/s each way (exact, by closed form)"
+    stdout_says "1.75342 links between two different nodes"
+    stdout_says "678720, 1326 a node (prices of the machine file)"
+    stderr_says "here/topology-what-if-hyperx.png and .svg"
+    [ -s here/topology-what-if-hyperx.png ]
+    grep -q '</svg>' here/topology-what-if-hyperx.svg
+}
+
+@test "several networks side by side, for programs" {
+    works mimdsim machines what-if-torus what-if-dragonfly t3e-300 --topology --json --quiet
+    json_is_valid
+    json_is '$[0].bisection_cables' 128
+    json_is '$[0].bisection_by' "closed form"
+    json_is '$[0].diameter' 12
+    json_is '$[1].bisection_by' partitioning
+    json_is '$[1].longest_route' 3
+    json_is '$[2].price' ""
+    json_is '$[2].routers' 128
+    stderr_is_empty
+    works mimdsim machines what-if-slim-fly --topology --json --quiet
+    json_is '$.diameter' 2
+    json_is '$.ports_of_router' 16
+}
+
+@test "settings change the network that is shown" {
+    works mimdsim machines t3e-300 --topology --set machine.topology.family=mesh --quiet
+    stdout_says "mesh 8 x 4 x 4"
+    stdout_says "16 cables"
+    works mimdsim machines t3e-300 --topology --set machine.price.port=100 --quiet
+    stdout_says "89600, 700 a node"
+}
+
+@test "without gnuplot, or of a network too large to draw, the numbers are there" {
+    MIMDSIM_GNUPLOT=/no/gnuplot works mimdsim machines what-if-clos --topology
+    stdout_says "folded-clos 16 x 32"
+    stderr_says "/no/gnuplot"
+    works mimdsim machines t3e-300 --topology --set machine.topology.dims='[32, 32, 16]'
+    stdout_says "measured from 64 routers"
+    stderr_says "16384 routers are too many for a picture"
+}
+
+@test "networks that cannot be, or are not named, are refused" {
+    fails_with 64 mimdsim machines --topology
+    stderr_says "needs the name of a machine"
+    fails_with 78 mimdsim machines what-if-slim-fly --topology --set machine.topology.dims=6 --json
+    json_is '$.error.kind' config
+    stderr_says "q = 6; expected a prime power"
+    fails_with 78 mimdsim machines what-if-clos --topology --set machine.topology.up='[8, 8]'
+    stderr_says "2 numbers in topology.up"
+    fails_with 78 mimdsim machines what-if-dragonfly-plus --topology --set machine.topology.dims='[8, 8, 8, 8, 80]'
+    stderr_says "80 groups"
+    nothing_left_behind
+}
+
+@test "a program runs on every what-if network, with the same messages and answer" {
+    local m
+    for m in $(every_what_if); do
+        works mimdsim run allreduce-algorithms --machine "$m" --set ranks=48 --set kernel.message='4 KiB' \
+            --set kernel.algorithm=recursive-doubling --quiet
+    done
+    sql_is mimdsim.db "SELECT count(DISTINCT machine) = $(every_what_if | wc -l), count(DISTINCT messages), min(status), max(status)
+        FROM run" "1|1|ok|ok"
+}
