@@ -35,7 +35,7 @@ static const struct column run_outcome[] = {
     {"status", COLUMN_WORD, RESULT(status), WORDS(status_word), .doc = "how it ended"},
     {"text", COLUMN_CHARS, RESULT(text), .doc = "why it is not ok"},
     {"makespan_ps", COLUMN_INT64, RESULT(makespan_ps),
-     .doc = "when the last rank ended, simulated time"},
+     .doc = "when the last rank ended, simulated time; of a deadlock, when the last stood still"},
     {"measured_s", COLUMN_REAL, RESULT(measured_s), .flags = COLUMN_NULL,
      .doc = "what a micro-benchmark's kernel measured, simulated time"},
     /* Closed chains (physics 7): constraints, how many are independent, how far they have

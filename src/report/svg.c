@@ -198,13 +198,15 @@ static bool parse(struct cleaner *c, const struct text *svg, XML_StartElementHan
 {
     c->depth = 0;
     c->parser = XML_ParserCreate("UTF-8");
-    CHECK(c->parser != NULL);
+    if (c->parser == NULL) return err_set(e, ERR_INTERNAL, "out of memory reading a picture");
     XML_SetUserData(c->parser, c);
     XML_SetElementHandler(c->parser, start, end);
     XML_SetCharacterDataHandler(c->parser, text);
     XML_SetStartDoctypeDeclHandler(c->parser, refuse_type);
     bool ok = XML_Parse(c->parser, svg->s, (int)svg->length, XML_TRUE) == XML_STATUS_OK;
-    if (!ok)
+    if (!ok && XML_GetErrorCode(c->parser) == XML_ERROR_NO_MEMORY)
+        err_set(e, ERR_INTERNAL, "out of memory reading a picture");
+    else if (!ok)
         err_set(e, ERR_DATA, "the picture is no SVG: line %lu: %s",
                 (unsigned long)XML_GetCurrentLineNumber(c->parser),
                 XML_ErrorString(XML_GetErrorCode(c->parser)));

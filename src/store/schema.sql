@@ -1,5 +1,7 @@
 -- The database of mimdsim. Simulated times are integer picoseconds, sizes bytes; every column name ends in its unit.
 -- Tables are for programs, views (v_...) for people and figures. Non-finite numbers are NULL.
+-- Tables, views and indices of your own may stand beside these: they stay, and only queries that name them use them.
+-- What has a name of these must be as here, and triggers are refused.
 
 -- Limits, and what studies note of themselves.
 CREATE TABLE meta (

@@ -108,6 +108,28 @@ static struct vp *walk_into_cycle(struct world *w, struct vp *v)
     return v;
 }
 
+sim_ps deadlock_reached(const struct world *w, int first, int n)
+{
+    sim_ps latest = 0;
+    for (int i = first; i < first + n; i++) {
+        const struct vp *v = &w->vp[i];
+        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock;
+        if (at > latest) latest = at;
+    }
+    return latest;
+}
+
+/* Each rank has waited since it stood still, or ended: so its parts add up to the run's time. */
+void deadlock_time(struct world *w, sim_ps reached)
+{
+    w->result->makespan_ps = reached;
+    for (int i = w->first; i < w->first + w->nown; i++) {
+        const struct vp *v = &w->vp[i];
+        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock;
+        if (v->stages) v->stages[w->nstage].wait_ps += reached - at;
+    }
+}
+
 void deadlock_explain(struct world *w)
 {
     char *text = w->result->text;

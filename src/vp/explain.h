@@ -37,4 +37,11 @@ void late_explain(struct world *w);
  * text. */
 void deadlock_explain(struct world *w);
 
+/* deadlock_reached: how far the `n` ranks from `first` have come: the latest time at which one of
+ * them ended or stood still [ps]. */
+sim_ps deadlock_reached(const struct world *w, int first, int n);
+
+/* deadlock_time: `reached` is the run's time; this process's ranks have waited until then. */
+void deadlock_time(struct world *w, sim_ps reached);
+
 #endif

@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/digest.h"
 #include "hosts/hosts_copy.h"
+#include "vp/explain.h"
 #include "vp/matching.h"
 #include "vp/team.h"
 
@@ -170,6 +171,7 @@ bool shared_collect(struct world *w)
 struct waiting {
     struct comm_request request;
     int32_t rank, stage, what, line;
+    sim_ps reached; /* of the last record: how far its process came */
     char file[64], request_file[64];
 };
 
@@ -217,12 +219,17 @@ bool shared_gather_waiting(struct world *w)
             ok = hosts_copy_out(h, 0, TAG_WAITING, &x, sizeof x);
         }
         x.rank = -1; /* no more */
+        x.reached = deadlock_reached(w, w->first, w->nown);
         return ok && hosts_copy_out(h, 0, TAG_WAITING, &x, sizeof x);
     }
     /* Every rank here tells the same count of a barrier. */
     for (int i = w->first; i < w->first + w->nown; i++) w->vp[i].world->barrier_count = (int)inside;
-    for (int from = 1; ok && from < h->size; from++)
+    sim_ps reached = deadlock_reached(w, w->first, w->nown);
+    for (int from = 1; ok && from < h->size; from++) {
         while ((ok = hosts_copy_in(h, from, TAG_WAITING, &x, sizeof x)) && x.rank >= 0)
             put_in_place(w, &x);
+        if (ok && x.reached > reached) reached = x.reached;
+    }
+    w->result->makespan_ps = reached;
     return ok;
 }

@@ -248,7 +248,10 @@ static void end_shared(struct world *w)
     if (end == SHARED_FINISHED && !shared_collect(w)) end = SHARED_BROKEN;
     if (end == SHARED_FINISHED && chief) copy_links(w);
     if (end == SHARED_DEADLOCK && !shared_gather_waiting(w)) end = SHARED_BROKEN;
-    if (end == SHARED_DEADLOCK && chief) deadlock_explain(w);
+    if (end == SHARED_DEADLOCK && chief) {
+        deadlock_explain(w);
+        deadlock_time(w, w->result->makespan_ps);
+    }
     if (end == SHARED_FINISHED) return;
     /* As on one process: times of a deadlock are kept, those of a failure are not. */
     if (end != SHARED_DEADLOCK) forget_parts(w);
@@ -290,8 +293,10 @@ static void run(struct world *w, uint64_t seed)
      * A deadlock's times are kept, since they show who waited where. What an event or a
      * rank would do beyond the end of time cannot be simulated, so such a run has failed. */
     const bool late = w->late || sim_beyond(w->sim), deadlock = !w->failed && !late;
-    if (deadlock) deadlock_explain(w);
-    else if (!w->failed) late_explain(w);
+    if (deadlock) {
+        deadlock_explain(w);
+        deadlock_time(w, deadlock_reached(w, 0, w->nrank));
+    } else if (!w->failed) late_explain(w);
     if (!deadlock) forget_parts(w);
     r->status = deadlock ? RUN_DEADLOCK : RUN_FAILED;
 }

@@ -3,7 +3,7 @@
 # strangers, but what findings.txt excuses with a reason. An excuse that is not needed any more is a finding, too.
 #
 # cppcheck looks at everything in 10 s of processor time. -fanalyzer follows single paths, which finds more and takes
-# longer: 20 s for these rooms, minutes for all, most of them for the numerics, where it finds nothing.
+# longer: 20 s for these rooms, minutes for all, most of them for the numerics.
 set -euo pipefail
 export LC_ALL=C
 source=${MIMDSIM_SRCDIR:-$(cd "$(dirname "$0")/../.." && pwd)} build=${MIMDSIM_BUILDDIR:-$PWD}

@@ -29,6 +29,8 @@ changed() {
     works mimdsim run speedup-t3e -o a.db -q --set n=4 --set machine.noise.compute=5% --set seed=1,2
     works mimdsim run speedup-t3e -o a.db -q --set n=8 --keep-all
     fails_with 70 mimdsim run deadlock -o a.db -q
+    # when nothing moved any more, and all ranks have waited or worked until then
+    sql_is a.db "SELECT count(*), min(makespan_ps > 0), max(accounting_error_ps) FROM run WHERE status = 'deadlock'" '1|1|0'
     works mimdsim check a.db --again all
     stdout_says "equal in every bit"
 }
