@@ -142,7 +142,11 @@ static uint64_t array_entry(const struct loader_instance *i, const struct loader
 }
 
 /* Kept as a call of its own, with these arguments, for a debugger. */
-__attribute__((noinline, noclone)) void loader_debug_stop(int rank, const char *file, uint64_t base)
+#ifndef __clang__
+__attribute__((noclone)) /* which clang does not know, and does not do */
+#endif
+__attribute__((noinline)) void
+loader_debug_stop(int rank, const char *file, uint64_t base)
 {
     __asm__ volatile("" : : "r"(rank), "r"(file), "r"(base) : "memory");
 }
