@@ -45,13 +45,14 @@
   }
 
   function spans() {
+    var gap = row > 17 ? 3 : 1;
     var last = {}; // the pixel and kind that were drawn last in each row: what would lie on them is left out
     run.spans.forEach(function (s, i) {
       if (s[TO] <= begin || s[FROM] >= end) return;
       var from = Math.max(x(s[FROM]), left), to = Math.min(x(s[TO]), width - right), key = Math.floor(to) + ' ' + s[KIND];
       if (to - from < 0.5 && last[s[RANK]] === key && i !== chosen) return;
       last[s[RANK]] = key;
-      var r = make(svg, 'rect', {x: from, y: y(s[RANK]) + 3, width: Math.max(to - from, 0.5), height: row - 6,
+      make(svg, 'rect', {x: from, y: y(s[RANK]) + gap, width: Math.max(to - from, 0.5), height: row - 2 * gap,
         'class': 'span' + (i === chosen ? ' chosen' : ''), fill: kinds[s[KIND]].fill, 'data-span': i});
       if (to - from > 16 && row > 17) {
         if (!kinds[s[KIND]].dark) // a clear ground for the letter
