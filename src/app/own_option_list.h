@@ -42,6 +42,15 @@
     X("plot", "columns", NULL, "list what --x, --y, --by and --where can name in this database")   \
     X("compare", "on", "SCENARIO", "what machines run to be compared (default speedup-t3e)")       \
     X("accuracy", "within", "ERROR", "recommend the cheapest way within this error, such as 2%")   \
+    X("load", "traffic", "PATTERN,...", "what is sent where (default uniform)")                    \
+    X("load", "routing", "NAME,...", "ways to choose routes (default: the machine's own)")         \
+    X("load", "rates", "LOW:HIGH[:STEP]", "offered loads, or a list of them (default 0.05:1:0.05)")\
+    X("load", "size", "SIZE", "payload of a message (default 64 B)")                               \
+    X("load", "within", "PERCENT", "wanted half width of the mean's interval (default 2%)")        \
+    X("load", "messages", "N", "most messages of a run (default 400000)")                          \
+    X("load", "seed", "S", "of the random traffic (default 1)")                                    \
+    X("load", "software", NULL, "message software limits the rate of messages, too")               \
+    X("load", "no-saturation", NULL, "do not look for the load of saturation")                     \
     X("netcheck", "within", "PERCENT", "require every error to be within this, such as 2%")        \
     X("netcheck", "stated", NULL, "print the stated accuracies and run nothing")                   \
     X("timeline", "from", "TIME", "begin there, such as 1.2 ms")                                   \

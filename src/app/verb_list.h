@@ -28,6 +28,7 @@
     X(cmd_validate, "validate",                                                                    \
       "compare machines with published values, networks with references")                          \
     X(cmd_links, "links", "show the most heavily loaded links of a run")                           \
+    X(cmd_load, "load", "measure latency and accepted load of networks against offered load")      \
     X(cmd_netcheck, "netcheck", "compare the network levels with reference results")               \
     X(cmd_accuracy, "accuracy",                                                                    \
       "measure error against run time: network, arithmetic, integration")                          \

@@ -169,12 +169,23 @@ void net_send(struct net *n, struct net_message *m)
 }
 
 /* T = R tau + (S - 1) flits + end, the same on every level (net_internal.h). */
+sim_ps net_zero_load_of(const struct net *n, const struct net_message *m)
+{
+    int nhop;
+    struct net_rate slow = net_slowest(n, m, &nhop);
+    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, m->bytes) - 1) +
+           net_end(n, m->bytes);
+}
+
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)
 {
-    struct net_message m = {.src = src, .dst = dst, .bytes = bytes};
-    int nhop;
-    struct net_rate slow = net_slowest(n, &m, &nhop);
-    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, bytes) - 1) + net_end(n, bytes);
+    return net_zero_load_of(n, &(struct net_message){.src = src, .dst = dst, .bytes = bytes});
+}
+
+/* Without flits the unit is a byte, whose time need not be whole picoseconds. */
+double net_flit_ps(const struct net *n)
+{
+    return n->link.flit ? (double)n->link.flit : n->link.byte;
 }
 
 bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy)

@@ -96,8 +96,15 @@ void net_foresee(struct net *n, net_early_fn *early);
  * do not. Call it before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);
 
-/* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
+/* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps].
+ * net_zero_load_of: of the message m (src, dst, bytes, id), on the route that its id draws. */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
+sim_ps net_zero_load_of(const struct net *n, const struct net_message *m);
+
+/* net_flits: the flits of all packets of a message of `bytes`, headers included. net_flit_ps: the
+ * time of a flit on a link of the machine's link rate [ps]. */
+int64_t net_flits(const struct net *n, int64_t bytes);
+double net_flit_ps(const struct net *n);
 
 /* net_occupy: directed link `link` serves somebody else's traffic for `busy` from `now`, or from
  * when it is free, first come first served. Called at the time `now` of the event being dispatched.

@@ -113,10 +113,9 @@ static inline struct net_rate net_resource_rate(const struct net *n, int resourc
 }
 
 /* net_packets: how many packets carry `bytes` of payload (>= 1); net_packet_flits: the flits of
- * packet `index` of them, header included (>= 1); net_flits: the flits of all together. */
+ * packet `index` of them, header included (>= 1). All together: net_flits. */
 int64_t net_packets(const struct net *n, int64_t bytes);
 int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index);
-int64_t net_flits(const struct net *n, int64_t bytes);
 
 /* net_choice: the number that selects among random routes, a hash of the message's id. */
 uint64_t net_choice(const struct net_message *m);

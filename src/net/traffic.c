@@ -145,17 +145,25 @@ static void replay_make(struct replay *r, struct arena *a)
     initial_make(r, a);
 }
 
+/* Whether what comes next is later than anybody wants to know: what is left is then under way, not
+ * stuck. */
+static bool is_over(const struct replay *r)
+{
+    return r->q->stop > 0 && sim_pending(r->sim) > 0 && sim_next_time(r->sim) > r->q->stop;
+}
+
 static void replay_run(struct replay *r, struct arena *a)
 {
     struct traffic_result *out = r->result;
     if (r->ninitial > 0) start_at(r, r->initial[r->next_initial++]);
-    while (sim_step(r->sim)) continue;
+    bool stopped = false;
+    while (!(stopped = is_over(r)) && sim_step(r->sim)) continue;
     out->events = sim_events(r->sim);
     out->digest = sim_digest(r->sim);
     out->link = net_links(r->net, a, &out->nlink);
     /* No event left and messages missing: the net names its cycle, or the list itself is
      * circular. */
-    out->deadlock = out->arrived < r->q->nmessage;
+    out->deadlock = !stopped && out->arrived < r->q->nmessage;
     if (out->deadlock && !net_deadlock(r->net, out->text, (int)sizeof out->text))
         strcpy(out->text, "messages wait for each other");
 }

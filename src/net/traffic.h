@@ -19,6 +19,7 @@ struct traffic {
     /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
     int *dep_first;
     int *dep;       /* numbers of other messages */
+    sim_ps stop;    /* nothing that happens later is simulated [ps]; 0: all is */
 };
 
 /* What a replay tells; the arrays are the caller's, (nmessage) or NULL where not wanted. */

@@ -17,7 +17,7 @@
 /* Studies whose rows stand for themselves. Verdicts on claims and explanations are left out: they
  * judge all runs of a database together, so after a merge they are to be made anew. */
 static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability",
-                                          "omission"};
+                                          "omission", "load_series", "load_point"};
 
 /* --- the other database ----------------------------------------------------------------------- */
 
@@ -231,6 +231,10 @@ static bool take_studies(struct store *s, struct store_merged *done, struct err 
 {
     bool ok = true;
     for (size_t i = 0; ok && i < sizeof study_table / sizeof study_table[0]; i++) {
+        /* tables that came later may be missing there */
+        if (sqlite3_table_column_metadata(s->db, "other", study_table[i], NULL, NULL, NULL, NULL,
+                                          NULL, NULL) != SQLITE_OK)
+            continue;
         ok = take_rows(s, "INSERT OR IGNORE", study_table[i], "", e);
         done->studies += sqlite3_changes(s->db);
     }

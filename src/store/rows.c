@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "measure/load_row.h"
 #include "measure/run_row.h"
 #include "measure/study_row.h"
 #include "store/rank_times.h"
@@ -50,6 +51,8 @@ static const struct {
     {"ladder_choice", &accuracy_choice_columns},
     {"stability", &stability_columns},
     {"omission", &saving_columns},
+    {"load_series", &load_series_columns},
+    {"load_point", &load_point_columns},
 };
 enum { STUDY_TABLES = sizeof study_table / sizeof *study_table };
 

@@ -650,6 +650,19 @@ CREATE TABLE IF NOT EXISTS run_family (
     family TEXT NOT NULL               -- as in table ladder
 ) STRICT;
 
+-- A network under one traffic (mimdsim load): what is known of it before it is loaded, and where it saturates.
+CREATE TABLE IF NOT EXISTS load_series (
+@load_series@
+    PRIMARY KEY (series)
+) STRICT, WITHOUT ROWID;
+-- What becomes of each offered load.
+CREATE TABLE IF NOT EXISTS load_point (
+    series TEXT NOT NULL,              -- as in table load_series
+@load_point@
+    CHECK (probe IN (0, 1)),
+    PRIMARY KEY (series, offered, probe)
+) STRICT, WITHOUT ROWID;
+
 -- How far the predicted time of a run is known. NULL: not known.
 --   run_id: the run
 --   level_error: of the network level, relative to the most detailed one: the largest of the ladder of such runs

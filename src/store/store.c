@@ -85,6 +85,16 @@ static bool upgrade(struct store *s, int version,
     return ok;
 }
 
+/* Make the tables that the database lacks. */
+static bool add_tables(struct store *s, struct err *e)
+{
+    struct text t = {0};
+    rows_schema(&t);
+    const bool ok = store_exec(s, strstr(t.s, "CREATE TABLE IF NOT EXISTS"), e);
+    text_free(&t);
+    return ok;
+}
+
 /* Everything between opening the file and the first statement of a writer. */
 static bool prepare_writer(struct store *s, struct err *e)
 {
@@ -99,8 +109,7 @@ static bool prepare_writer(struct store *s, struct err *e)
     if (empty || s->fresh) guard_trust(s);
     else if (version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) return false;
     /* Tables that came after the first databases of this version; a new one has them all. */
-    if (!s->fresh && !store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e))
-        return false;
+    if (!s->fresh && !add_tables(s, e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(
         s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);

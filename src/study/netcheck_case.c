@@ -11,9 +11,9 @@
 #include <string.h>
 
 #include "base/check.h"
-#include "base/random.h"
 #include "base/text.h"
 #include "machine/topology.h"
+#include "net/pattern.h"
 
 /* most nodes whose routes are all followed; channels inside and between a dragonfly's groups
  * [cycles] */
@@ -241,227 +241,29 @@ bool netcheck_step(const char *pattern, int distance, int nnode, int flits, stru
 
 /* ---- random loads ---- */
 
-enum rule {
-    UNIFORM,
-    BIT_COMPLEMENT,
-    BIT_REVERSE,
-    TRANSPOSE,
-    SHUFFLE,
-    TORNADO,
-    NEIGHBOUR,
-    SHIFT,
-    XOR,
-    BAD_DRAGONFLY
-};
-
-struct pattern {
-    enum rule rule;
-    int nnode, bits; /* nodes; log2 of them */
-    int radix, ndim; /* tornado, neighbour */
-    int distance;    /* shift, xor */
-    int group;       /* nodes per group of a dragonfly */
-};
-
-/* Names of the reference's patterns, and which of them permute bits of the node's number. */
-static const struct {
-    const char *word;
-    enum rule rule;
-    bool power_of_two;
-} rules[] = {
-    {"uniform", UNIFORM, false},
-    {"bitcomp", BIT_COMPLEMENT, true},
-    {"bitrev", BIT_REVERSE, true},
-    {"transpose", TRANSPOSE, true},
-    {"shuffle", SHUFFLE, true},
-    {"tornado", TORNADO, false},
-    {"neighbor", NEIGHBOUR, false},
-    {"shift", SHIFT, false},
-    {"xor", XOR, true},
-    {"bad_dragon", BAD_DRAGONFLY, false},
-};
-enum { RULES = sizeof rules / sizeof *rules };
-
-/* The word before the bracket or the numbers is the pattern's name. One almost like it is a
- * mistake (ERR_DATA), another is a pattern that this program does not have (ERR_UNAVAILABLE). */
-static int rule_of(const char *text, struct err *e)
-{
-    const char *word[RULES];
-    char start[64];
-    int length = (int)strcspn(text, "(0123456789");
-    snprintf(start, sizeof start, "%.*s", length, text);
-    for (int i = 0; i < RULES; i++) {
-        word[i] = rules[i].word;
-        if (strcmp(start, word[i]) == 0) return i;
-    }
-    const char *near = text_nearest(start, word, RULES);
-    if (near) err_set(e, ERR_DATA, "unknown pattern '%.64s'; did you mean '%s'?", text, near);
-    else
-        err_set(e, ERR_UNAVAILABLE,
-                "pattern '%.64s' is not supported; known: uniform, bitcomp, bitrev, transpose, "
-                "shuffle, tornado, neighbor, shift, xor, bad_dragon",
-                text);
-    return -1;
-}
-
-/* tornado(k,n) and neighbor(k,n) move digits to the base k: there must be k^n nodes */
-static bool digits_read(const char *text, const struct topology *t, const int *number, int n,
-                        struct pattern *p, struct err *e)
-{
-    bool given = n > 0,
-         grid = t->spec->family == TOPOLOGY_TORUS || t->spec->family == TOPOLOGY_MESH;
-    p->radix = given ? number[0] : t->spec->dims[0];
-    p->ndim = n > 1 ? number[1] : t->spec->ndim;
-    if (!given && !grid) return err_set(e, ERR_DATA, "pattern '%.64s': its radix is missing", text);
-    if (p->radix >= 2 && p->ndim >= 1 && p->ndim < 32 && pow(p->radix, p->ndim) == t->nnode)
-        return true;
-    return err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes",
-                   text, p->ndim, p->radix, t->nnode);
-}
-
-/* A pattern with its numbers, checked against the network before anything is sent. */
-static bool pattern_read(const char *text, const struct topology *t, struct pattern *p,
-                         struct err *e)
-{
-    int number[2] = {0, 0}, n = numbers_in(text, number, 2), found = rule_of(text, e);
-    if (found < 0) return false;
-    *p = (struct pattern){.rule = rules[found].rule, .nnode = t->nnode, .distance = number[0]};
-    /* bits = ceil(log2 nnode); a pattern of bits needs it exact. */
-    while (p->bits < 30 && 1 << p->bits < t->nnode) p->bits++;
-    if (rules[found].power_of_two && 1 << p->bits != t->nnode)
-        return err_set(e, ERR_DATA, "pattern '%.64s' needs 2^n nodes, not %d", text, t->nnode);
-    if (p->rule == TORNADO || p->rule == NEIGHBOUR) return digits_read(text, t, number, n, p, e);
-    bool far = p->rule == SHIFT || p->rule == XOR;
-    if (far && n < 1) return err_set(e, ERR_DATA, "pattern '%.64s': its distance is missing", text);
-    if (far && p->distance >= t->nnode)
-        return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text,
-                       t->nnode);
-    /* A dragonfly's group has a routers with p nodes each. */
-    if (p->rule == BAD_DRAGONFLY) p->group = t->spec->dims[0] * t->spec->dims[1];
-    if (p->rule == BAD_DRAGONFLY && t->spec->family != TOPOLOGY_DRAGONFLY)
-        return err_set(e, ERR_DATA, "pattern '%.64s' needs a dragonfly", text);
-    return true;
-}
-
-/* Every coordinate of i moved up by `step` around its ring; i is written to the base `radix`. */
-static int digits_moved(const struct pattern *p, int i, int step)
-{
-    int to = 0, stride = 1;
-    for (int d = 0; d < p->ndim; d++, stride *= p->radix)
-        to += (i / stride + step) % p->radix * stride;
-    return to;
-}
-
-static int bits_reversed(int i, int bits)
-{
-    int to = 0;
-    for (int b = 0; b < bits; b++) to |= (i >> b & 1) << (bits - 1 - b);
-    return to;
-}
-
-/* Where node i sends to; definitions of Dally and Towles, Principles and Practices of
- * Interconnection Networks, section 3.2. */
-static int destination(const struct pattern *p, int i, struct random *r)
-{
-    int mask = p->nnode - 1, half = p->bits / 2;
-    switch (p->rule) {
-    case UNIFORM:
-        return (int)random_below(r, (uint64_t)p->nnode);
-    case BIT_COMPLEMENT:
-        return ~i & mask;
-    case BIT_REVERSE:
-        return bits_reversed(i, p->bits);
-    case TRANSPOSE:
-        return (i >> half | i << half) & mask;
-    case SHUFFLE:
-        return (i << 1 & mask) | i >> (p->bits - 1);
-    case TORNADO:
-        /* Half way around, less one: the worst case of minimal routing on a ring. */
-        return digits_moved(p, i, (p->radix + 1) / 2 - 1);
-    case NEIGHBOUR:
-        return digits_moved(p, i, 1);
-    case SHIFT:
-        return (i + p->distance) % p->nnode;
-    case XOR:
-        return i ^ p->distance;
-    case BAD_DRAGONFLY:
-        /* A random node of the next group: all of a group's messages share its one link there. */
-        return ((i / p->group + 1) * p->group) % p->nnode +
-               (int)random_below(r, (uint64_t)p->group);
-    }
-    CHECK(false);
-    return 0;
-}
-
-/* Cycles until the next arrival (>= 1), when each cycle has one with probability prob:
- * geometric, by inversion of u uniform in [0, 1). log1p keeps small probabilities exact. */
-static double geometric(struct random *r, double prob)
-{
-    if (prob >= 1) return 1;
-    double u = random_uniform(r, 0, 1);
-    return floor(log1p(-u) / log1p(-prob)) + 1;
-}
-
 bool netcheck_load(const char *pattern, const struct topology *t, int flits, double load,
                    int cycles, uint64_t seed, struct arena *a, struct traffic *q, struct err *e)
 {
-    struct pattern p = {0};
-    if (!pattern_read(pattern, t, &p, e)) return false;
-    if (flits < 1 || !(load > 0) || load > 1 || cycles < 1)
-        return err_set(
-            e, ERR_DATA,
-            "load %g with packets of %d flits for %d cycles; expected a load above 0 and up to 1, "
-            "packets of at least 1 flit and at least 1 cycle",
-            load, flits, cycles);
-    /* A load counts flits, an arrival is a packet. */
-    double prob = load / flits;
-    double expected = prob * cycles * t->nnode;
-    if (expected > NETCHECK_MOST_MESSAGES)
-        return err_set(e, ERR_DATA,
-                       "load %g for %d cycles on %d nodes is %.3g messages; expected at most %d",
-                       load, cycles, t->nnode, expected, NETCHECK_MOST_MESSAGES);
-    /* Room for the mean and eight standard deviations (n p (1 - p) < expected): a list that
-     * needs more would be cut, which no seed is likely to show. */
-    int most = (int)(expected + 8 * sqrt(expected) + 64), n = 0;
-    traffic_take(q, most, a);
-    /* Each node has a random stream of its own, so that its messages do not depend on the other
-     * nodes. */
-    for (int i = 0; i < t->nnode; i++) {
-        struct random r = random_make(seed, 0x6c6f6164, (uint64_t)i); /* "load" */
-        for (double at = geometric(&r, prob) - 1; at < cycles && n < most;
-             at += geometric(&r, prob), n++) {
-            q->src[n] = i;
-            q->dst[n] = destination(&p, i, &r);
-            q->bytes[n] = (int64_t)flits * NETCHECK_FLIT_BYTES;
-            q->time[n] = (sim_ps)at * NETCHECK_CYCLE_PS;
-        }
-    }
-    q->nmessage = n;
-    return true;
+    struct pattern p;
+    const struct pattern_load l = {.load = load,
+                                   .flits = flits,
+                                   .bytes = (int64_t)flits * NETCHECK_FLIT_BYTES,
+                                   .cycle_ps = NETCHECK_CYCLE_PS,
+                                   .cycles = cycles,
+                                   .seed = seed,
+                                   .most = NETCHECK_MOST_MESSAGES};
+    return pattern_read(&p, pattern, t, a, e) && pattern_traffic(&p, &l, a, q, e);
 }
 
 double netcheck_channel_load(const char *pattern, const struct topology *t, struct arena *a,
                              struct err *e)
 {
     struct pattern p;
-    if (!pattern_read(pattern, t, &p, e)) return -1;
+    if (!pattern_read(&p, pattern, t, a, e)) return -1;
     /* All routes of all pairs are followed: only where they are few and do not depend on the
      * load or on chance. */
-    if (t->nnode > MOST_ROUTED_NODES || !t->fixed_routes || p.rule == BAD_DRAGONFLY) return 0;
-    struct arena_mark mark = arena_mark(a);
-    double *load = TAKE(a, t->nlink + 1, double), most = 0;
-    struct hop *route = TAKE(a, t->max_hops + 2, struct hop);
-    struct random r = random_make(0, 0, 0);
-    int per_source = p.rule == UNIFORM ? t->nnode : 1;
-    /* Each source sends one flit per cycle, spread over its destinations. */
-    for (int i = 0; i < t->nnode; i++)
-        for (int k = 0; k < per_source; k++) {
-            int to = p.rule == UNIFORM ? k : destination(&p, i, &r),
-                n = topology_route(t, i, to, 0, route);
-            for (int h = 0; h < n; h++) load[route[h].link] += 1.0 / per_source;
-        }
-    for (int l = 0; l < t->nlink; l++) most = fmax(most, load[l]);
-    arena_release(a, mark);
-    return most;
+    if (t->nnode > MOST_ROUTED_NODES || !t->fixed_routes || p.rule == PATTERN_BAD_GROUP) return 0;
+    return pattern_channel_load(&p, t, 1, 1, a);
 }
 
 double netcheck_channel_cycles(const struct topology *t, const struct traffic *q, sim_ps first,

@@ -11,7 +11,7 @@ quoted() {
 }
 
 # Words to fill in, and what takes longer than a test may.
-not_run='[A-Z]{4,}|\.\.\.|\[[A-Z]|\./program|^mimdsim (paper|stability|accuracy|claims|verify|validate)|--measure|--uncertainty|n=16384|n=1280|threads'
+not_run='[A-Z]{4,}|\.\.\.|\[[A-Z]|\./program|^mimdsim (paper|stability|accuracy|claims|verify|validate|load)|--measure|--uncertainty|n=16384|n=1280|threads'
 
 # look_up COMMAND: its verb exists and has its options.
 look_up() {
