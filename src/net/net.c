@@ -1,5 +1,6 @@
 /* net.c - makes a net of a level: converts the machine's numbers to picoseconds once, sizes
  * messages, forms the closed form of the empty network. */
+#include <stdio.h>
 #include <string.h>
 
 #include "base/random.h"
@@ -160,6 +161,21 @@ struct net *net_share(const struct net *n, void *context, struct arena *a)
     *share = *n;
     share->context = context;
     return share;
+}
+
+bool net_takes(const struct net *n, int64_t bytes, char *text, size_t size)
+{
+    if (n->type == &net_loggp || n->type == &net_link) return true;
+    const int64_t packets = net_packets(n, bytes), buffer = n->machine->network.buffer_flits;
+    /* A message in one packet goes in pieces of a buffer's size. */
+    const int64_t pieces =
+        packets > 1 ? packets : net_packet_flits(n, bytes, 0) / (buffer > 0 ? buffer : 1) + 1;
+    if (pieces <= INT32_MAX) return true;
+    snprintf(text, size,
+             "a message of %lld bytes is of %lld packets; level %s takes at most %d: a larger "
+             "network.packet, or level link",
+             (long long)bytes, (long long)pieces, n->type->name, INT32_MAX);
+    return false;
 }
 
 void net_send(struct net *n, struct net_message *m)

@@ -72,6 +72,10 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
                        struct arena *a, net_deliver_fn *deliver, void *context, bool want_links,
                        struct err *e);
 
+/* net_takes: whether a message of `bytes` is of no more packets, or pieces of a buffer's size, than
+ * a level that simulates them counts, 2^31 - 1; else why not, in `text`. */
+bool net_takes(const struct net *n, int64_t bytes, char *text, size_t size);
+
 /* net_send: hand over a message; see the contract above. m is borrowed until deliver. */
 void net_send(struct net *n, struct net_message *m);
 

@@ -168,6 +168,15 @@ static void replay_run(struct replay *r, struct arena *a)
         strcpy(out->text, "messages wait for each other");
 }
 
+/* Asked before any is sent: a replay has no other way to fail. */
+static bool all_taken(const struct net *n, const struct traffic *q, struct err *e)
+{
+    char why[256];
+    for (int m = 0; m < q->nmessage; m++)
+        if (!net_takes(n, q->bytes[m], why, sizeof why)) return err_set(e, ERR_DATA, "%s", why);
+    return true;
+}
+
 /* The simulation is made and destroyed here; everything else lives in the caller's arena. */
 bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t,
                  struct arena *a, bool want_links, struct traffic_result *out, struct err *e)
@@ -178,6 +187,7 @@ bool traffic_run(const struct traffic *q, const struct machine_spec *m, const st
     out->text[0] = '\0';
     struct replay r = {.q = q, .sim = sim_create(), .result = out};
     r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
+    if (r.net && !all_taken(r.net, q, e)) r.net = NULL;
     if (r.net) {
         replay_make(&r, a);
         replay_run(&r, a);

@@ -1,5 +1,6 @@
 /* launch.c - a message sets out: into the network, or over the memory that two processors of one
  * node share. */
+#include "vp/explain.h"
 #include "vp/path.h"
 #include "vp/vp.h"
 
@@ -11,7 +12,10 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
     m->net.dst = w->placement.node[to - w->vp];
     m->net.processor = from->processor;
     if (!w->shared_channel || m->net.src != m->net.dst) {
-        net_send(w->net, &m->net);
+        char why[256];
+        /* A message that is not sent does not matter any more: the run has ended. */
+        if (net_takes(w->net, m->net.bytes, why, sizeof why)) net_send(w->net, &m->net);
+        else vp_record_failure((struct vp *)from, NULL, 0, why);
         return;
     }
     /* Memory that two processors share (docs/network.md): latency and bytes at its

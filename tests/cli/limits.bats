@@ -117,3 +117,14 @@ X
     done
     [ "${lines[6]}" = '0 query mnt/a.db SELECT count(*) FROM run ' ]
 }
+
+@test "a message of more packets than a level counts ends its run with both numbers" {
+    printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'kernel: {name: pingpong, message: 3 GiB}' 'ranks: 2' >big.yaml
+    for level in packet flit auto; do
+        fails_with 1 timeout 60 "$MIMDSIM" run big.yaml -o a.db --quiet --set level=$level --set machine.network.packet='1 B'
+        stderr_says "a message of 3221225472 bytes is of 3221225472 packets; level $level takes at most 2147483647"
+    done
+    sql_is a.db "SELECT count(*), group_concat(DISTINCT status) FROM run" '3|failed'
+    # larger packets
+    works timeout 60 "$MIMDSIM" run big.yaml -o a.db --quiet --set level=link --set machine.network.packet='1 B'
+}
