@@ -254,6 +254,19 @@ bool guard_schema(struct store *s, const char *schema, const char *path, struct 
 
 /* --- the rows -------------------------------------------------------------------------------- */
 
+/* What the check found. A page that could not be had for lack of memory, or for the disk, is told
+ * in the same words as one that is damaged, but for its number, SQLite's result code. */
+static bool refuse_rows(const struct store *s, const char *found, struct err *e)
+{
+    static const char code[] = "error code=";
+    const char *at = strstr(found, code);
+    const long number = at != NULL ? strtol(at + sizeof code - 1, NULL, 10) & 0xff : 0;
+    if (number == SQLITE_NOMEM)
+        return err_set(e, ERR_INTERNAL, "no memory for database %s", s->path);
+    if (number == SQLITE_IOERR) return err_set(e, ERR_IO, "reading database %s failed", s->path);
+    return err_set(e, ERR_DATA, "database %s is damaged: %s", s->path, found);
+}
+
 /* SQLite's own check, of which one finding is enough. It reads all pages once, as a report does;
  * the full check of indices would sort them. A row that passes has what its table promises, so that
  * nobody who reads it has to ask whether a name is there. */
@@ -266,8 +279,7 @@ bool guard_rows(struct store *s, struct err *e)
                   : store_failed(s, e);
     /* "ok", or what is wrong: "NULL value in run.status", "CHECK constraint failed in span". */
     const char *found = ok && row ? store_cell(q, 0) : NULL;
-    if (found != NULL && strcmp(found, "ok") != 0)
-        ok = err_set(e, ERR_DATA, "database %s is damaged: %s", s->path, found);
+    if (found != NULL && strcmp(found, "ok") != 0) ok = refuse_rows(s, found, e);
     sqlite3_finalize(q);
     return ok;
 }
