@@ -228,3 +228,19 @@ size_t arena_peak(const struct arena *a)
 {
     return a->peak;
 }
+
+/* Small blocks are dropped for larger ones from run to run, until one holds all of a run. */
+void arena_empty(struct arena *a, size_t keep)
+{
+    while (a->top) {
+        struct block *below = a->top->below;
+        /* It would take the place of one that may stay. */
+        if (a->top->capacity > keep) block_unmap(a->top), a->top = below;
+        else arena_drop_top(a);
+    }
+    if (a->spare && a->spare->capacity > keep) block_unmap(a->spare), a->spare = NULL;
+    /* Blocks must not double for ever. */
+    if (a->next > FIRST_BLOCK) a->next = a->spare ? 2 * a->spare->capacity : FIRST_BLOCK;
+    if (a->next > LARGEST_BLOCK) a->next = LARGEST_BLOCK;
+    a->peak = 0;
+}

@@ -22,6 +22,11 @@ struct arena *arena_create(void);
 /* arena_destroy: give back every byte; accepts NULL. */
 void arena_destroy(struct arena *a);
 
+/* arena_empty: give back everything taken and begin anew, the peak as well; of its blocks the
+ * largest one of at most `keep` bytes stays, so that the next run of the same size finds its
+ * pages. */
+void arena_empty(struct arena *a, size_t keep);
+
 /* arena_take: `size` zeroed bytes, aligned to 64; lives until arena_destroy or the release of an
  * earlier mark. */
 void *arena_take(struct arena *a, size_t size);

@@ -80,10 +80,12 @@ int launch_threads(int asked, int cores, int nrank)
 
 bool launch_run(const struct program_run *r, const struct machine_spec *m,
                 const struct record_spec *record, uint64_t seed, int64_t largest,
-                struct arena *scratch, struct arena *a, struct run_result *out, struct err *e)
+                struct arena *scratch, struct arena *world, struct arena *a,
+                struct run_result *out, struct err *e)
 {
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     struct world_load load = load_of(r, largest);
+    load.scratch = world;
     const char *alone = world_alone(m, &load, record);
     load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
     out->threads = load.threads;

@@ -24,8 +24,14 @@
 /* MOST_ATTEMPTS: no program asks for as many (kernel/trust.c). */
 enum { MOST_CACHES = 8, MOST_ATTEMPTS = 16, TAG_VERDICT = 400 };
 
-/* One cache for all programs that make theirs with the same function. */
+/* KEPT_BYTES: memory of a run that the next one finds with its pages. To fault in and give back
+ * those of a small run takes a fifth of its time; a large one must not hold them for small ones. */
+enum { KEPT_BYTES = 64 << 20 };
+
+/* One cache for all programs that make theirs with the same function, and the memory of a run:
+ * `own` for the program's scene, `scratch` for workspaces and checks, `world` for the machine. */
 struct run_cache {
+    struct arena *own, *scratch, *world; /* owned; empty between runs */
     int n;
     const struct program_type *type[MOST_CACHES]; /* (n) the first of those that share */
     struct program_cache *cache[MOST_CACHES]; /* (n) owned */
@@ -34,13 +40,20 @@ struct run_cache {
 struct run_cache *run_cache_create(void)
 {
     struct run_cache *c = memory_zeroed(1, sizeof *c);
+    c->own = arena_create();
+    c->scratch = arena_create();
+    c->world = arena_create();
     return c;
 }
 
 void run_cache_destroy(struct run_cache *c)
 {
     /* Each by the program type that made it. */
-    for (int i = 0; c && i < c->n; i++) c->type[i]->cache_destroy(c->cache[i]);
+    if (c == NULL) return;
+    for (int i = 0; i < c->n; i++) c->type[i]->cache_destroy(c->cache[i]);
+    arena_destroy(c->own);
+    arena_destroy(c->scratch);
+    arena_destroy(c->world);
     free(c);
 }
 
@@ -97,7 +110,7 @@ void run_close(struct program_run *r)
 static bool chief(const struct program_run *r) { return !r->hosts || r->hosts->rank == 0; }
 
 /* The ranks once, with the settings that are in force now. */
-static bool attempt(struct program_run *r, struct arena *scratch, struct arena *a,
+static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
                     struct run_result *out, struct err *e)
 {
     /* What --keep-all and `explain --measure` undo acts here: the spec itself stays as it is. */
@@ -105,10 +118,11 @@ static bool attempt(struct program_run *r, struct arena *scratch, struct arena *
     const struct record_spec record = omission_record(&r->spec);
     memset(out, 0, sizeof *out);
     out->residual = out->measured_s = NAN;
-    if (!r->type->prepare(r, scratch, e)) return false;
-    if (!launch_run(r, &machine, &record, run_spec_seed(&r->spec), omission_largest_message(r),
-                    scratch, a, out, e))
-        return false;
+    if (!r->type->prepare(r, c->scratch, e)) return false;
+    const bool ok = launch_run(r, &machine, &record, run_spec_seed(&r->spec),
+                               omission_largest_message(r), c->scratch, c->world, a, out, e);
+    arena_empty(c->world, KEPT_BYTES);
+    if (!ok) return false;
     out->residual = out->measured_s = NAN;
     if (out->status == RUN_OK && chief(r) && r->type->judge) r->type->judge(r, out);
     return true;
@@ -134,16 +148,16 @@ static bool once_more(struct program_run *r, struct run_result *out)
 }
 
 /* Attempts until the program asks for no more; only the last leaves anything in the arenas. */
-static bool attempts(struct program_run *r, struct arena *scratch, struct arena *a,
+static bool attempts(struct program_run *r, struct run_cache *c, struct arena *a,
                      struct run_result *out, struct err *e)
 {
     /* A program asks again when its residual is too large: the next attempt has more refinement. */
-    const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
-    bool ok = attempt(r, scratch, a, out, e);
+    const struct arena_mark work = arena_mark(c->scratch), results = arena_mark(a);
+    bool ok = attempt(r, c, a, out, e);
     while (ok && once_more(r, out)) {
-        arena_release(scratch, work);
+        arena_release(c->scratch, work);
         arena_release(a, results);
-        ok = attempt(r, scratch, a, out, e);
+        ok = attempt(r, c, a, out, e);
     }
     return ok;
 }
@@ -236,13 +250,11 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
         return err_set(e, ERR_CONFIG,
                        "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a "
                        "level");
-    /* Three arenas: `a` for the result, `own` for the program's scene, `scratch` for ranks and
-     * checks. */
-    struct arena *own = arena_create(), *scratch = arena_create();
+    struct arena *scratch = cache->scratch;
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
-    const bool ok = ranks_fit(spec, order, e) && run_open(spec, order, cache, own, &r, e) &&
-                    attempts(&r, scratch, a, out, e);
+    const bool ok = ranks_fit(spec, order, e) && run_open(spec, order, cache, cache->own, &r, e) &&
+                    attempts(&r, cache, a, out, e);
     if (ok && chief(&r)) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;
@@ -253,8 +265,8 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
     out->exit_status = r.exit_status;
     check_note_set(NULL, NULL);
     run_close(&r);
-    arena_destroy(scratch);
-    arena_destroy(own);
+    arena_empty(scratch, KEPT_BYTES);
+    arena_empty(cache->own, KEPT_BYTES);
     out->host_total_s = host_seconds() - begin;
     out->host_peak_bytes = host_peak_bytes();
     return ok;

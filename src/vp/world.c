@@ -306,12 +306,14 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
                struct run_result *out, struct err *e)
 {
     struct message_pool pool = {0};
+    const struct arena_mark begin =
+        load->scratch ? arena_mark(load->scratch) : (struct arena_mark){0};
     struct world w = {
         .machine = m,
         .record = record,
         .result = out,
         .arena = a,
-        .scratch = arena_create(),
+        .scratch = load->scratch ? load->scratch : arena_create(),
         .arrived = arrived,
         .sim = sim_create(),
         .nrank = load->nrank,
@@ -343,7 +345,9 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
     path_log_destroy(w.path);
     fiber_pool_destroy(w.fibers);
     sim_destroy(w.sim);
-    arena_destroy(w.scratch);
+    /* Somebody who has many runs keeps the memory for the next one. */
+    if (load->scratch) arena_release(load->scratch, begin);
+    else arena_destroy(w.scratch);
     free(published.interval);
     return ok;
 }

@@ -42,6 +42,8 @@ struct world_load {
     /* processes that share the run, each with a part of the ranks; NULL: only this one */
     const struct hosts *hosts;
     int job_run;               /* number of the run among those of these processes */
+    /* memory of the machine, of which nothing is left taken at the end; NULL: fresh */
+    struct arena *scratch;
     /* for tests: threads stop for a while at random, by this seed; 0: they do not */
     uint64_t delays;
     /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */

@@ -69,6 +69,50 @@ static void memory_taken_again_after_a_release_is_zeroed(void **state)
     arena_destroy(a);
 }
 
+/* Runs of changing sizes in one arena: each finds zeros, whatever the one before has left. */
+static void an_emptied_arena_begins_anew(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct random r = random_make(7, 0, 0);
+    for (int run = 0; run < 60; run++) {
+        const int n = (int)random_below(&r, 40) + 1;
+        size_t bytes = 0;
+        assert_int_equal(arena_peak(a), 0);
+        for (int i = 0; i < n; i++) {
+            const size_t size = random_below(&r, run % 7 == 0 ? 500000 : 20000) + 1;
+            unsigned char *p = arena_take(a, size);
+            assert_int_equal((uintptr_t)p % 64, 0);
+            assert_true(all_are(p, size, 0));
+            memset(p, 255, size);
+            bytes += size;
+        }
+        assert_true(arena_peak(a) >= bytes);
+        arena_empty(a, run % 5 == 0 ? 0 : 1 << 20);
+    }
+    arena_destroy(a);
+}
+
+static void a_block_that_is_kept_is_found_again(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    /* the third time one block holds all that the two before took in several */
+    char *first = NULL;
+    for (int run = 0; run < 8; run++) {
+        char *p = arena_take(a, 50000);
+        for (int i = 0; i < 9; i++) arena_take(a, 50000);
+        if (run == 5) first = p;
+        if (run > 5) assert_ptr_equal(p, first);
+        arena_empty(a, 4 << 20);
+    }
+    /* nothing that is larger than allowed stays */
+    memset(arena_take(a, 8 << 20), 1, 8 << 20);
+    arena_empty(a, 4 << 20);
+    assert_true(all_are(arena_take(a, 8 << 20), 8 << 20, 0));
+    arena_destroy(a);
+}
+
 static void marks_nest_and_spare_what_was_taken_before(void **state)
 {
     (void)state;
@@ -131,6 +175,8 @@ int main(void)
         cmocka_unit_test(takes_are_zeroed_aligned_and_apart),
         cmocka_unit_test(memory_of_an_arena_before_is_zeroed),
         cmocka_unit_test(memory_taken_again_after_a_release_is_zeroed),
+        cmocka_unit_test(an_emptied_arena_begins_anew),
+        cmocka_unit_test(a_block_that_is_kept_is_found_again),
         cmocka_unit_test(marks_nest_and_spare_what_was_taken_before),
         cmocka_unit_test(the_peak_is_the_largest_use_not_the_last),
         cmocka_unit_test(untouched_memory_costs_no_memory_of_the_host),

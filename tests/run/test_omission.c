@@ -149,7 +149,8 @@ static bool answer_of(const struct run_spec *spec, struct arena *a, struct answe
         if (left_out) *n = omission_listing(&r, left_out);
         const struct machine_spec machine = omission_machine(spec);
         const struct record_spec record = omission_record(spec);
-        if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), a, a, result, &e))
+        if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), a, NULL, a, result,
+                        &e))
             fail_msg("%s", e.text);
         assert_int_equal(result->status, RUN_OK);
         keep_answer(&r, result, v);
