@@ -33,6 +33,8 @@ rm figures.db
 "$MIMDSIM" run speedup-t3e --set n=16,32,64,128 --set level=link -o figures.db --quiet >/dev/null
 "$MIMDSIM" why speedup-t3e --set n=128 --set level=link -o figures.db --quiet >/dev/null
 figure tutorial-why why
+figure tutorial-slack slack
+figure tutorial-roofline roofline
 "$MIMDSIM" run speedup-t3e --set n=16,32,64,128 --set level=link --set machine.software.send.overhead="2 us" \
     --set machine.software.recv.overhead="2 us" --name "T3E, fast messages" -o figures.db --quiet >/dev/null
 figure tutorial-what-if --x P --y speedup --by name
@@ -45,3 +47,27 @@ network: {link: {bandwidth: 960 MB/s}}
 END
 "$MIMDSIM" run speedup-t3e -m my.yaml --set n=16,32,64,128 --set level=link -o figures.db --quiet >/dev/null
 figure tutorial-machines --x P --y makespan_s --by name
+figure tutorial-own --x P --y overhead_share --by name --title "How much of the time goes into messages"
+rm -rf drawn
+"$MIMDSIM" compare t3e-300 paragon --on speedup-t3e --set n=16,64 --set level=loggp -o figures.db --dir drawn --quiet >/dev/null
+cp drawn/compare-t3e-300-paragon.svg "$into/tutorial-compare.svg"
+
+# the files that its section on studies has
+tutorial_file() { # NAME: the indented block behind "Save this as `NAME`"
+    awk -v name="\`$1\`" '/^Save this|Save this as/ && index($0, name) { found = 1; next }
+        found && /^    / { print substr($0, 5); seen = 1; next }
+        found && seen { exit }' "$here/tutorial.md" >"$1"
+}
+for study in grid sample best; do
+    tutorial_file $study.yaml
+    rm -f figures.db
+    "$MIMDSIM" run $study.yaml -o figures.db --quiet >/dev/null
+    case $study in
+    grid) figure tutorial-grid --x n --y P --z speedup ;;
+    sample) figure tutorial-sample --x end_latency --y makespan_s --by solver ;;
+    best) figure tutorial-best --x n --y makespan_s --by solver ;;
+    esac
+done
+rm figures.db
+"$MIMDSIM" run speedup-t3e --set n=16,64 --set level=loggp --uncertainty 16 -o figures.db --quiet >/dev/null
+figure tutorial-uncertainty uncertainty

@@ -20,7 +20,7 @@ bar_high = 17.0; group_high = bar_high*sides + 24
 lines_high = lines ? 330.0 : 0
 bars_high = shown*group_high + 60
 upper = 60.0
-high = upper + lines_high + 34 + bars_high + 18
+high = upper + lines_high + 34 + bars_high + 30
 at_y(px) = 1.0 - px/high
 left = 0.03 + 0.0078*(longest > 44 ? 44 : longest)
 left = left < 0.1 ? 0.1 : left
@@ -41,7 +41,7 @@ do for [format in formats] {
     set multiplot
     set label 96 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 97 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, wide) at screen 0.99,at_y(high - foot_high(provenance, wide)) right noenhanced font least(format) textcolor rgb grey
     if (lines) {
         set lmargin at screen 0.1; set rmargin at screen 0.975
         set tmargin at screen at_y(upper + 8); set bmargin at screen at_y(upper + lines_high - 56)

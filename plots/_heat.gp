@@ -24,7 +24,7 @@ panel_wide = left_px + nx*cell_wide + 112
 panel_high = ny*cell_high + 70 + (panels > 1 ? 22 : 0)
 wide = columns*panel_wide < 640 ? 640.0 : columns*panel_wide
 upper = 78.0 + (strlen(bands) > 0 ? 18 : 0)
-high = upper + rows*panel_high + 18
+high = upper + rows*panel_high + 30
 shift = (wide - columns*panel_wide)/2
 at_x(px) = (px + shift)/wide; at_y(px) = 1.0 - px/high
 
@@ -38,7 +38,7 @@ do for [format in formats] {
     set label 97 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
     set label 95 "colours and numbers: ".vlabel at screen 0.5,at_y(62) center noenhanced font small(format) textcolor rgb grey
     set label 98 bands at screen 0.5,at_y(80) center noenhanced font small(format) textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, wide) at screen 0.99,at_y(high - foot_high(provenance, wide)) right noenhanced font least(format) textcolor rgb grey
     unset grid; set border 0
     set cbrange [vmin:vmax]; if (vlog > 0) { set logscale cb 10 }
     set format cb "%.4g"

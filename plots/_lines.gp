@@ -43,7 +43,7 @@ do for [format in formats] {
     set label 96 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 97 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
     set label 98 bands at screen 0.5,at_y(60) center noenhanced font small(format) textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, wide) at screen 0.99,at_y(high - foot_high(provenance, wide)) right noenhanced font least(format) textcolor rgb grey
     if (legend) { set key at screen 0.5,at_y(54 + (strlen(bands) > 0 ? 18 : 0)) center top horizontal maxcols legend_columns samplen 3 noenhanced } \
     else { unset key }
     plot NaN notitle, for [k=1:curves] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype point[turn(k)] pointsize 0.9 \

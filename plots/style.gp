@@ -12,6 +12,16 @@ set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
+# A line that is longer than a page of `wide` pixels goes on two, divided behind a semicolon or a comma of its second half;
+# foot_high is where they stand above the lower edge.
+room(wide) = int(wide/5.4)
+behind(s, mark) = strstrt(s[int(strlen(s)/2):*], mark)
+divided(s, mark, k) = s[1:int(strlen(s)/2) + k + strlen(mark) - 2]."\n".s[int(strlen(s)/2) + k + strlen(mark) - 1:*]
+foot(s, wide) = strlen(s) <= room(wide) ? s : \
+    behind(s, "; ") > 0 && int(strlen(s)/2) + behind(s, "; ") <= room(wide) ? divided(s, "; ", behind(s, "; ")) : \
+    behind(s, ", ") > 0 ? divided(s, ", ", behind(s, ", ")) : s
+foot_high(s, wide) = strlen(s) <= room(wide) ? 9 : 22
+
 # A PNG has twice the pixels of the SVG, and its fonts, lines, symbols and dashes are scaled so that both look alike.
 png_font = "DejaVu Sans,19"; svg_font = "DejaVu Sans,13"
 large(format) = format eq "png" ? ",23" : ",16"

@@ -20,6 +20,7 @@
 #include "base/memory.h"
 #include "run/run.h"
 #include "store/store.h"
+#include "store/swept.h"
 #include "study/model_file.h"
 
 static const char doc[] =
@@ -292,7 +293,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     else if (ok)
         ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     /* What is known of the errors, before the rows are shown. */
-    ok = ok && known_error_note(k->store, k->run, p->nrun, e) && store_publish(k->store, e);
+    ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
+         store_swept_view(k->store, e) && store_publish(k->store, e);
     if (ok && k->whole) atomic_fetch_add(&k->interrupt.stored, k->done);
     interrupt_end(&k->interrupt);
     free(skip);

@@ -86,3 +86,21 @@ fast, wide'
     works mimdsim plot b.db fig6 --quiet
     [ "$(grep -c 'left out' figures/fig6.provenance)" = 0 ]
 }
+
+@test "a setting that differs between runs is a column of view v_swept, in base units" {
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp -o s.db --quiet
+    sql_is s.db "SELECT count(*) FROM sqlite_schema WHERE name = 'v_swept'" 0
+    works mimdsim run speedup-t3e --set n=4,8 --set level=loggp --set machine.network.hop_latency='100 ns,3 us' -o s.db --quiet
+    sql_is s.db "SELECT group_concat(hop_latency, ' ') FROM (SELECT DISTINCT hop_latency FROM v_swept ORDER BY 1)" '6.0e-08 1.0e-07 3.0e-06'
+    sql_is s.db 'SELECT count(*), count(DISTINCT n), min(makespan_s) > 0 FROM v_swept' '5|2|1'
+    # Another sweep, another column; words stay words, and what is there already is not doubled.
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp --set kernel.solver=cr,pcr --set machine.network.link.bandwidth='1 GB/s' -o s.db --quiet
+    sql_is s.db "SELECT group_concat(DISTINCT solver) FROM v_swept WHERE link_bandwidth = 1e9" 'cr,pcr'
+    sql_is s.db "SELECT count(*) FROM pragma_table_info('v_swept') WHERE name IN ('n', 'level', 'machine')" 3
+    works mimdsim query s.db "SELECT hop_latency, makespan_s FROM v_swept"
+    works mimdsim plot s.db --x hop_latency --y makespan_s
+    # A view of the user's own of that name stays.
+    sqlite3 s.db "DROP VIEW v_swept; CREATE VIEW v_swept AS SELECT 1 AS mine"
+    works mimdsim run speedup-t3e --set n=16 --set level=loggp -o s.db --quiet
+    sql_is s.db 'SELECT mine FROM v_swept' 1
+}
