@@ -240,7 +240,8 @@ static bool add_side(struct request *r, int side, const char *word, struct err *
     return kind == FILE_DATABASE ? database_side(r, word, e) : called_side(r, word, e);
 }
 
-/* Databases are closed, sides forgotten. */
+/* Databases are closed, sides forgotten. Plans stay: they were read at the first look, and reading
+ * a scenario of a person's program again would compile it again. */
 static void forget_sides(struct request *r)
 {
     for (int i = 0; i < MOST_SIDES; i++) {

@@ -74,7 +74,10 @@ static bool from_database(const struct common *c, struct run_spec *run, struct a
     char why[256];
     struct found f = {0};
     if (c->narg < 2)
-        return err_set(e, ERR_USAGE, "which run of %s? Column id of table run tells", c->arg[0]);
+        return err_set(e, ERR_USAGE,
+                       "which run of %s? `mimdsim query %s \"SELECT run_id, name, n, P, level FROM "
+                       "v_run\"` lists them",
+                       c->arg[0], c->arg[0]);
     const char *const param[] = {c->arg[1]};
     struct store *s = arguments_database(c, "", e);
     bool ok = s && arguments_run_number(c->arg[1], e) &&

@@ -81,6 +81,7 @@ static unsigned group_of(int group)
 struct parse {
     struct common *common;
     int least, most; /* arguments that are not options */
+    const char *words; /* what they are, as --help shows it; alternatives on lines of their own */
     struct err error; /* what was wrong, for the document */
 };
 
@@ -94,6 +95,19 @@ static error_t refuse(struct argp_state *state, const char *format, const char *
     err_set(&p->error, ERR_USAGE, "%s", text);
     argp_error(state, "%s", text);
     return EINVAL;
+}
+
+/* Who has typed the verb alone is told what it takes: the next thing to type, without a look at the
+ * manual. Alternatives stand on lines of their own in --help, and with commas here. */
+static error_t refuse_few(struct argp_state *state, const char *words)
+{
+    char one[256];
+    size_t n = 0;
+    for (; words != NULL && words[n] != '\0' && n < sizeof one - 1; n++)
+        one[n] = words[n] == '\n' ? ',' : words[n];
+    one[n] = '\0';
+    return refuse(state, n > 0 ? "an argument is missing; expected %s" : "an argument is missing%s",
+                  one);
 }
 
 /* Values are only collected: their keys are checked when the plan is read, with file and line. */
@@ -180,7 +194,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->arg[c->narg++] = arg;
         break;
     case ARGP_KEY_END: /* all words have been seen */
-        return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
+        return c->narg < p->least ? refuse_few(state, p->words) : 0;
     case KEY_OWN:
         /* A verb has taken out its own options by their whole names: this was the beginning of
          * one. */
@@ -288,7 +302,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     for (size_t i = 0; i < sizeof own_table / sizeof *own_table; i++)
         if (strcmp(argv[0] + strcspn(argv[0], " ") + 1, own_table[i].verb) == 0)
             option[n++] = own_table[i].option;
-    struct parse p = {c, least, most, {0}};
+    struct parse p = {.common = c, .least = least, .most = most, .words = args};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
     bool document = common_wants_json(argc, argv);
     /* Looked at first, since argp ends the process at an unknown option. */

@@ -179,7 +179,8 @@ static const char *stage_of(const struct why *w, const struct roofline_row *r)
     return r->stage < 0 ? "whole run" : w->run.stage_name[r->stage];
 }
 
-/* The rate that the lowest roof allows. */
+/* The rate that the lowest roof allows: what the stage would reach if it did this one thing alone
+ * and never waited for anybody. */
 static double roof_of(const struct roofline_row *r)
 {
     return fmin(r->computing, fmin(r->bandwidth, r->software));
