@@ -9,6 +9,7 @@ SELECT row_number() OVER (ORDER BY x.ordinal) AS series, replace(x.stage, ',', '
        -- the port's line is the same for all stages but where the rate depends on the size of messages
        (SELECT min(y.bandwidth * y.sent_bytes / y.flops) FROM x y) / 1e6 AS port,
        (SELECT max(y.computing) FROM x y) / 1e6 AS peak,
+       r.id AS run_id,
        format('Computing against communication of %s on %s: n = %d; P = %d; level %s', r.kernel,
               (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = r.id), r.n, r.P, r.level) AS title
 FROM x, r ORDER BY x.ordinal;

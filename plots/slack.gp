@@ -28,7 +28,7 @@ do for [format in formats] {
     set lmargin at screen 0.685; set rmargin at screen 0.985; set tmargin at screen 0.83
     set xrange [0:100]; set yrange [parts + 0.6:0.4]
     set ytics scale 0 font tiny noenhanced; unset ylabel; set xlabel "share of the time of all ranks and messages [%]" offset 0,name_lift(format)
-    set key at screen 0.985,0.875 right top horizontal samplen 1 width -3 font tiny maxrows 1 maxcols 3
+    set key at screen 0.985,0.885 right top horizontal samplen 1 width (format eq "png" ? -3 : -6) font tiny maxrows 1 maxcols 3
     set boxwidth 0.7
     plot data using (of(2) ? column("critical")/2 : NaN):"x":(column("critical")/2):(0.34) with boxxyerror linewidth 0.3 \
             fillcolor rgb contention_colour title "critical", \

@@ -10,10 +10,10 @@ SELECT 1 AS panel, s.rank AS x, s.slack_ps / 1e6 AS y, 0 AS critical, 0 AS near,
        format('rank %d: %.4g µs in %s', s.rank, s.slack_ps / 1e6, replace(s.stage, ',', ' –')) AS told,
        format('Slack of %s on %s: n = %d; P = %d; level %s: %.4g µs', r.kernel,
               (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = r.id), r.n, r.P, r.level,
-              r.makespan_ps / 1e6) AS title, r.makespan_ps / 20e6 AS near_us
+              r.makespan_ps / 1e6) AS title, r.makespan_ps / 20e6 AS near_us, r.id AS run_id
 FROM rank_slack s, r WHERE s.run_id = r.id
 UNION ALL
 SELECT 2, p.place, NULL, 100.0 * p.critical_ps / p.time_ps, 100.0 * (p.near_ps - p.critical_ps) / p.time_ps,
-       100.0 * (p.time_ps - p.near_ps) / p.time_ps, replace(p.what, ',', ' –'), '', '', NULL
+       100.0 * (p.time_ps - p.near_ps) / p.time_ps, replace(p.what, ',', ' –'), '', '', NULL, NULL
 FROM part p WHERE p.place <= 12
 ORDER BY 1, 2;

@@ -17,7 +17,7 @@ rows AS (
 SELECT rows.panel, rows.y, replace(rows.what, ',', ' –') AS what, rows.time_ps / 1e6 AS time_us,
        CASE rows.panel WHEN 3 THEN format('%.4g µs (%.2f×)', rows.time_ps / 1e6, 1.0 * r.makespan_ps / rows.time_ps)
             ELSE format('%.4g µs (%.1f %%)', rows.time_ps / 1e6, 100.0 * rows.time_ps / r.makespan_ps) END AS label,
-       rows.other, r.makespan_ps / 1e6 AS makespan_us,
+       rows.other, r.makespan_ps / 1e6 AS makespan_us, r.id AS run_id,
        format('What limits %s on %s: n = %d; P = %d; level %s: %.4g µs', r.kernel, (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = r.id), r.n, r.P, r.level,
               r.makespan_ps / 1e6) AS title
 FROM rows, r WHERE rows.y <= 12 ORDER BY rows.panel, rows.y;

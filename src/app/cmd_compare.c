@@ -8,13 +8,16 @@
 
 #include "app/arguments.h"
 #include "app/flag.h"
+#include "app/known_error.h"
 #include "app/levels.h"
 #include "app/verb.h"
 #include "plan/file_kind.h"
 #include "report/compare.h"
 #include "report/figure_text.h"
+#include "report/how_sure.h"
 #include "run/run.h"
 #include "store/store.h"
+#include "store/swept.h"
 
 static const char doc[] =
     "Compare machines, scenarios, stored runs or databases: what differs in their settings, their "
@@ -118,7 +121,7 @@ static bool make_runs(struct request *r, const struct plan *p, struct run_spec *
     struct keep k = {s, e};
     return run_campaign(run, order, p->nrun, skip, r->common->jobs, r->common->quiet, keep_result,
                         &k, e) &&
-           e->kind == ERR_NONE;
+           e->kind == ERR_NONE && known_error_note(s, run, p->nrun, e) && store_swept_view(s, e);
 }
 
 /* What side number `side` will run: a scenario; on `machine`, unless it is NULL. Nothing is run or
@@ -284,6 +287,21 @@ static char *figure_name(const struct request *r)
     return name;
 }
 
+/* How far the times of each side are known: a ratio is no better than what it is made of. */
+static bool tell_errors(const struct request *r, struct err *e)
+{
+    printf("\n");
+    for (int i = 0; i < r->nside; i++) {
+        struct how_sure h;
+        struct text sentence = {0};
+        if (!how_sure_read(r->side[i].store, r->side[i].run_ids, &h, e)) return false;
+        how_sure_sentence(&h, &sentence);
+        if (sentence.length > 0) printf("%c  %s\n", 'A' + i, sentence.s);
+        text_free(&sentence);
+    }
+    return true;
+}
+
 /* The tables first: they are there even if gnuplot is not. */
 static bool answer(struct request *r, struct err *e)
 {
@@ -296,6 +314,9 @@ static bool answer(struct request *r, struct err *e)
     bool ok = compare_make(&c, r->nside, r->side, e);
     if (ok) {
         compare_print(&c, common->json, stdout);
+        ok = common->json || tell_errors(r, e);
+    }
+    if (ok) {
         fflush(stdout);
         char *name = figure_name(r);
         ok = compare_draw(&c, plan_data_dir(), common->directory, name, e);

@@ -62,6 +62,17 @@ load helper
     stdout_says 'B takes '
 }
 
+@test "each side says how far its times are known" {
+    works mimdsim compare t3e-300 paragon --set n=4 --set level=loggp
+    stdout_says 'A  How sure: the network level is not known to be right'
+    stdout_says 'B  How sure:'
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp --uncertainty 8 --quiet
+    works mimdsim compare t3e-300 paragon --set n=4 --set level=loggp
+    grep -Eq '^A  How sure: .* leave open is [+-][0-9]+ to' <<<"$output"
+    works mimdsim compare t3e-300 paragon --set n=4 --set level=loggp --json
+    ! grep -q 'How sure' <<<"$output"
+}
+
 @test "all sides are found before anything is run or stored" {
     fails_with 66 mimdsim compare t3e-300 nowhere --set n=4
     stderr_says "'nowhere' is no machine"
