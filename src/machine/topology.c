@@ -111,6 +111,12 @@ bool topology_uniform(const struct topology *t)
     return !t->type->share || t->spec->nlink_percent == 0;
 }
 
+/* Families without dimensions of their own have one length for all: the first one. */
+double topology_link_latency(const struct topology *t, int link)
+{
+    return t->spec->dim_latency[t->type->rate_dim ? t->type->rate_dim(t, link) : 0];
+}
+
 /* 0 means: as the machine's link. An unlimited machine link cannot be divided by. */
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth)
 {

@@ -72,6 +72,9 @@ bool topology_uniform(const struct topology *t);
  * says otherwise). */
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth);
 
+/* topology_link_latency: what its cable takes longer than network.hop_latency [s]. */
+double topology_link_latency(const struct topology *t, int link);
+
 /* topology_injection_port: number of node `node`'s input port at its router, after those of all
  * links. */
 int topology_injection_port(const struct topology *t, int node);

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "net/net_internal.h"
+#include "net/net_way.h"
 
 static const struct net_type *const levels[] = {
 #define X(constant, word, stem, cost, fineness) [constant] = &net_##stem,
@@ -12,12 +13,29 @@ static const struct net_type *const levels[] = {
 #undef X
 };
 
+static bool long_cables(const struct topology_spec *s)
+{
+    for (int d = 0; d < MACHINE_MAX_DIMS; d++)
+        if (s->dim_latency[d] > 0) return true;
+    return false;
+}
+
+/* Whether a packet's way depends on more than its ends, or cables differ in length. */
+static bool routed(const struct machine_spec *m)
+{
+    return m->network.routing != ROUTING_DETERMINISTIC || long_cables(&m->topology);
+}
+
 /* A bus is one resource, served first come first served: all levels mean the same, which is what
  * `link` does. */
 static const struct net_type *level_of(const struct machine_spec *m)
 {
     enum network_level level =
         topology_has(m->topology.family, TOPOLOGY_SHARED) ? LEVEL_LINK : m->network.level;
+    if (routed(m)) {
+        if (level == LEVEL_PACKET || level == LEVEL_AUTO) return &net_routed_packet;
+        if (level == LEVEL_FLIT) return &net_routed_flit;
+    }
     return (size_t)level < sizeof levels / sizeof *levels ? levels[level] : NULL;
 }
 
@@ -48,6 +66,25 @@ static void link_rates_make(struct net *n, const struct network_spec *w)
         double factor = topology_link_bandwidth(n->topology, l, w->link_bandwidth);
         n->link_rate[l] = rate_make(w, factor * w->link_bandwidth, 0);
     }
+}
+
+/* The rule, and what cables take longer. Levels without channels are not bound by their number. */
+static bool routing_make(struct net *n, const struct machine_spec *m, struct err *e)
+{
+    if (!routed(m) || topology_has(m->topology.family, TOPOLOGY_NO_LINKS)) {
+        if (m->network.routing == ROUTING_DETERMINISTIC) return true;
+        return err_set(e, ERR_CONFIG, "network.routing '%s' is not for topology '%s'",
+                       routing_rule_name(m->network.routing),
+                       topology_family_name(m->topology.family));
+    }
+    const bool channels = n->type == &net_routed_packet || n->type == &net_routed_flit;
+    n->routing = routing_create(n->topology, m->network.routing,
+                                channels ? m->network.virtual_channels : 0, n->arena, e);
+    if (!n->routing || !long_cables(&m->topology)) return n->routing != NULL;
+    n->wire = TAKE(n->arena, n->nlink + 1, sim_ps);
+    for (int l = 0; l < n->nlink; l++)
+        n->wire[l] = sim_from_seconds(topology_link_latency(n->topology, l));
+    return true;
 }
 
 /* Injection ports by message size: the software's gap, rate and latency may change with the
@@ -117,7 +154,7 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->nresource = 2 * t->nnode + t->nlink;
     n->tau = sim_from_seconds(w->hop_latency);
     n->credit = sim_from_seconds(w->credit_latency);
-    if (!setup_make(n, w, e)) return NULL;
+    if (!setup_make(n, w, e) || !routing_make(n, m, e)) return NULL;
     /* The levels add (R + 1) tau without a look at the clock: refuse what could wrap. */
     if (ps_times(t->max_hops + 2, n->tau) > PS_LAST) {
         err_set(e, ERR_CONFIG,
@@ -187,10 +224,9 @@ void net_send(struct net *n, struct net_message *m)
 /* T = R tau + (S - 1) flits + end, the same on every level (net_internal.h). */
 sim_ps net_zero_load_of(const struct net *n, const struct net_message *m)
 {
-    int nhop;
-    struct net_rate slow = net_slowest(n, m, &nhop);
-    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, m->bytes) - 1) +
-           net_end(n, m->bytes);
+    struct net_rate slow;
+    const sim_ps way = net_way(n, m, &slow);
+    return way + net_rate_time(slow, net_flits(n, m->bytes) - 1) + net_end(n, m->bytes);
 }
 
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)

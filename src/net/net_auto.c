@@ -164,7 +164,7 @@ static void start_event(void *subject, uint64_t argument, sim_ps now)
 
 static bool auto_create(struct net *n, struct err *e)
 {
-    struct fabric *f = packet_fabric(n, packet_look, e);
+    struct fabric *f = packet_fabric(n, sizeof(struct fabric), packet_look, e);
     if (f) f->occupied = auto_occupied;
     n->state = f;
     return f != NULL;

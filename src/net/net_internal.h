@@ -43,6 +43,7 @@ struct net_port {
     sim_ps end;          /* end latency, with that of the segment [ps] */
 };
 
+struct routing;
 struct net {
     const struct net_type *type;
     const struct machine_spec *machine; /* borrowed */
@@ -67,6 +68,8 @@ struct net {
     bool port_private;
     int64_t in_flight;      /* messages accepted and not yet delivered */
     struct link_load *load; /* (nresource), NULL unless wanted; who each is: net_links */
+    const struct routing *routing; /* NULL: the topology's routes, cables all alike (net_way.h) */
+    sim_ps *wire;                  /* (nlink) what cables add to the hop latency; NULL: nothing */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
     struct net_hold *hold;  /* (nresource) with path */
     void *state;            /* of the level */

@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "net/net_path.h"
+#include "net/net_way.h"
 
 /* A message on its way: all that its head needs at a resource in one line of the cache, since the
  * message itself lies elsewhere, cold, until it arrives. */
@@ -25,6 +26,7 @@ struct flight {
     /* At the end of the way: */
     struct net_rate slow; /* slowest rate of the route */
     struct flight *next;  /* in the pool of unused ones */
+    struct route *route;  /* its way by a rule of network.routing, NULL: `cursor` */
     uint32_t path;        /* node at which the head was last, where critical paths are recorded */
     int ejection;         /* the last resource */
 } __attribute__((aligned(64)));
@@ -59,7 +61,11 @@ static struct flight *flight_take(struct net *n)
     struct link_level *g = n->state;
     if (!g->pool) {
         struct flight *chunk = TAKE(n->arena, CHUNK, struct flight);
-        for (int i = 0; i < CHUNK; i++) chunk[i].next = i + 1 < CHUNK ? &chunk[i + 1] : NULL;
+        struct route *route = n->routing ? TAKE(n->arena, CHUNK, struct route) : NULL;
+        for (int i = 0; i < CHUNK; i++) {
+            chunk[i].next = i + 1 < CHUNK ? &chunk[i + 1] : NULL;
+            if (route) chunk[i].route = &route[i];
+        }
         g->pool = chunk;
     }
     struct flight *f = g->pool;
@@ -94,13 +100,60 @@ static sim_ps resource_take(struct net *n, int resource, int64_t bytes, sim_ps n
 
 static void head_arrives(void *subject, uint64_t argument, sim_ps now);
 
+/* What a link is reserved for beyond now, in flits: on this level the load that rules compare. */
+struct backlog {
+    const struct net *net;
+    sim_ps now;
+};
+
+static int64_t backlog_used(const void *of, int link)
+{
+    const struct backlog *b = of;
+    const struct link_level *g = b->net->state;
+    const sim_ps ahead = g->free[net_resource(b->net, link)] - b->now;
+    const struct net_rate r = b->net->link_rate ? b->net->link_rate[link] : b->net->link;
+    if (ahead <= 0) return 0;
+    return r.flit > 0 ? ahead / r.flit : r.byte > 0 ? (int64_t)((double)ahead / r.byte) : 0;
+}
+
+/* By a rule: of several ways on the one of the highest priority, of equals the one that is free
+ * first. There are no channels, so that an escape is never needed. */
+static bool rule_next(struct net *n, struct flight *f, sim_ps now, struct hop *h)
+{
+    const struct link_level *g = n->state;
+    const struct backlog load = {n, now};
+    const struct routing_view view = {backlog_used, &load};
+    struct route_option option[ROUTING_MOST_OPTIONS], *best = option;
+    int from, to;
+    const int count = routing_next(n->routing, f->route, &view, option);
+    if (count == 0) return false;
+    for (int i = 1; i < count; i++) {
+        const bool equal = option[i].priority == best->priority;
+        const sim_ps free = g->free[net_resource(n, option[i].link)],
+                     least = g->free[net_resource(n, best->link)];
+        if (equal ? free < least : option[i].priority > best->priority) best = &option[i];
+    }
+    routing_take(n->routing, f->route, best, best->first + best->count - 1);
+    *h = (struct hop){.link = best->link};
+    topology_link_ends(n->topology, h->link, &from, &to, &h->port);
+    /* The tail goes at the slowest rate of the way that it took. */
+    f->slow = net_rate_slower(f->slow, n->link_rate ? n->link_rate[h->link] : n->link);
+    return true;
+}
+
 /* the head left its resource at x: it is at the next one tau later */
 static void head_sent(struct net *n, struct flight *f, sim_ps x)
 {
     struct hop h;
     int port = f->port;
     if (n->path) f->path = net_path_take(n, f->resource, f->path, x, f->bytes);
-    if (topology_next(n->topology, &f->cursor, &h)) {
+    sim_ps there = x + n->tau;
+    if (n->wire && !net_is_injection(n, f->resource)) {
+        const sim_ps wire = n->wire[f->resource - n->nnode];
+        there += wire;
+        if (n->path) f->path = net_path_way(n, f->path, wire, f->resource);
+    }
+    if (n->routing ? rule_next(n, f, x, &h) : topology_next(n->topology, &f->cursor, &h)) {
         f->resource = net_resource(n, h.link);
         f->port = h.port;
     } else {
@@ -109,7 +162,7 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
         for (int line = 0; line < 3; line++) __builtin_prefetch((const char *)f->m + 64 * line);
     }
     /* The key is the port through which the head entered the resource it leaves. */
-    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->key), head_arrives, n,
+    sim_at(n->sim, there, NET_LANE_HEAD, net_event_key(port, f->key), head_arrives, n,
            (uintptr_t)f);
 }
 
@@ -138,14 +191,20 @@ static void link_inject(struct net *n, struct net_message *m)
 {
     struct link_level *g = n->state;
     struct flight *f = flight_take(n);
-    int nhop;
+    struct net_rate slow;
+    const sim_ps way = net_way(n, m, &slow);
     f->m = m;
     f->bytes = m->bytes;
     f->flits = net_flits(n, m->bytes);
     f->key = (uint32_t)(m->id & 0xffffff);
     f->ejection = net_ejection(n, m->dst);
-    f->slow = net_slowest(n, m, &nhop);
-    f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    f->slow = slow;
+    if (n->routing) {
+        *f->route = net_route_begin(n, m);
+        f->slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
+    } else {
+        f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    }
     f->port = topology_injection_port(n->topology, m->src);
     f->resource = net_injection(n, m->src);
     f->path = m->path;
@@ -160,7 +219,7 @@ static void link_inject(struct net *n, struct net_message *m)
     if (g->nprocessor == 1) own = m->injected;
     /* The closed form of the empty network from there on. */
     m->uncontended =
-        own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
+        own + way + net_rate_time(slow, f->flits - 1) + net_end(n, m->bytes);
     head_sent(n, f, m->injected);
 }
 

@@ -7,6 +7,7 @@
  * whose messages come in the order of their ready times, the answer is known in net_send and costs
  * no event. */
 #include "net/net_path.h"
+#include "net/net_way.h"
 
 struct loggp {
     sim_ps *port;     /* (nnode) when the injection port is free */
@@ -41,11 +42,11 @@ static sim_ps port_take(sim_ps *port, sim_ps ready, sim_ps busy)
 static void loggp_inject(struct net *n, struct net_message *m)
 {
     struct loggp *g = n->state;
-    int nhop;
-    struct net_rate slow = net_slowest(n, m, &nhop);
+    struct net_rate slow;
+    const sim_ps way = net_way(n, m, &slow);
     int64_t flits = net_flits(n, m->bytes);
     sim_ps busy = net_port_busy(n, m->bytes, flits);
-    sim_ps flight = (nhop + 1) * n->tau + net_rate_time(slow, flits - 1) + net_end(n, m->bytes);
+    sim_ps flight = way + net_rate_time(slow, flits - 1) + net_end(n, m->bytes);
     m->injected = port_take(&g->port[m->src], m->ready, busy);
     m->arrival = m->injected + flight;
     m->uncontended = m->arrival;
@@ -55,7 +56,7 @@ static void loggp_inject(struct net *n, struct net_message *m)
     if (n->path) {
         const uint32_t sent =
             net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
-        m->path = net_path_tail(n, net_path_hops(n, sent, nhop + 1, -1), slow, m->bytes);
+        m->path = net_path_tail(n, net_path_way(n, sent, way, -1), slow, m->bytes);
     }
     net_account(n, net_injection(n, m->src), 1, m->bytes, busy, m->injected - m->ready);
     net_arrive(n, m);

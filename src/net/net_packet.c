@@ -417,7 +417,7 @@ void packet_look(void *subject, uint64_t argument, sim_ps now)
 
 static bool packet_create(struct net *n, struct err *e)
 {
-    struct fabric *f = packet_fabric(n, packet_look, e);
+    struct fabric *f = packet_fabric(n, sizeof(struct fabric), packet_look, e);
     if (f) f->occupied = packet_occupied;
     n->state = f;
     return f != NULL;

@@ -23,7 +23,7 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
 
 /* packet_fabric: the same for levels packet and auto, which also need buffers that hold a packet
  * and the credit round trip: otherwise NULL with ERR_CONFIG that names the keys. */
-struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e);
+struct fabric *packet_fabric(struct net *n, size_t size, sim_action *look, struct err *e);
 
 /* packet_send: net_type.send of levels packet and flit. */
 void packet_send(struct net *n, struct net_message *m);
@@ -35,9 +35,10 @@ void packet_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
 void packet_look(void *subject, uint64_t argument, sim_ps now);
 
 /* Pools: nothing is allocated once a run has reached its widest point. flight_take also finds the
- * route of m and cuts it into packets; fifo_of makes the FIFOs behind r when they are first
- * used. */
+ * route of m and cuts it into packets, flight_plain cuts it only; fifo_of makes the FIFOs behind r
+ * when they are first used. */
 struct flight *flight_take(struct fabric *f, struct net_message *m);
+struct flight *flight_plain(struct fabric *f, struct net_message *m, struct net_rate slowest);
 void flight_return(struct fabric *f, struct flight *w);
 struct packet *packet_take(struct fabric *f);
 void packet_return(struct fabric *f, struct packet *p);

@@ -96,9 +96,9 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     return f;
 }
 
-struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e)
+struct fabric *packet_fabric(struct net *n, size_t size, sim_action *look, struct err *e)
 {
-    struct fabric *f = fabric_create(n, sizeof *f, look, e);
+    struct fabric *f = fabric_create(n, size, look, e);
     if (!f || !cut_through_config(n, e)) return NULL;
     f->cuts = true;
     return f;
@@ -218,6 +218,25 @@ static void pass_init(struct fabric *f, struct flight *w, int h, const struct ho
     s->flit = flit < longest ? flit : longest;
 }
 
+/* Flits so slow that the message outlasts simulated time: as slow as that takes, so that no sum of
+ * times wraps. */
+static sim_ps flight_longest(struct flight *w)
+{
+    const sim_ps longest = PS_TOO_LONG / ((int64_t)(w->npacket - 1) * w->full + w->last);
+    if (w->slowest > longest) w->slowest = longest;
+    return longest;
+}
+
+struct flight *flight_plain(struct fabric *f, struct net_message *m, struct net_rate slowest)
+{
+    struct flight *w = flight_alloc(f, 0);
+    *w = (struct flight){.m = m, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
+    flight_cut(f, w);
+    flight_longest(w);
+    f->nflight++;
+    return w;
+}
+
 /* The route is found once, when the message is handed over; random routes by its id. */
 struct flight *flight_take(struct fabric *f, struct net_message *m)
 {
@@ -228,10 +247,7 @@ struct flight *flight_take(struct fabric *f, struct net_message *m)
     *w = (struct flight){
         .m = m, .nhop = nhop, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
     flight_cut(f, w);
-    /* Flits so slow that the message outlasts simulated time: as slow as that takes, so that no sum
-     * of times wraps. */
-    const sim_ps longest = PS_TOO_LONG / ((int64_t)(w->npacket - 1) * w->full + w->last);
-    if (w->slowest > longest) w->slowest = longest;
+    const sim_ps longest = flight_longest(w);
     for (int h = 0; h <= nhop; h++) pass_init(f, w, h, &way[h], longest);
     f->nflight++;
     return w;

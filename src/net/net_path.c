@@ -5,6 +5,7 @@
  * later message finds it busy do the nodes come into being that lead from there to the moment it is
  * free: most holds bind nobody. */
 #include "net/net_path.h"
+#include "net/net_way.h"
 
 struct net_hold {
     uint32_t node; /* when it was taken */
@@ -88,6 +89,14 @@ uint32_t net_path_hops(const struct net *n, uint32_t before, int hops, int resou
     return add(n, before, hops * n->tau, PATH_HOP, resource, hops);
 }
 
+/* Hop latencies are what a faster router changes; what is left over is cable. */
+uint32_t net_path_way(const struct net *n, uint32_t before, sim_ps way, int resource)
+{
+    const int hops = n->tau > 0 ? (int)(way / n->tau) : 0;
+    if (!n->wire) return net_path_hops(n, before, hops, resource);
+    return add(n, before, way, PATH_HOP, resource, 0);
+}
+
 uint32_t net_path_tail(const struct net *n, uint32_t before, struct net_rate slow, int64_t bytes)
 {
     const int64_t flits = net_flits(n, bytes) - 1;
@@ -100,9 +109,9 @@ uint32_t net_path_tail(const struct net *n, uint32_t before, struct net_rate slo
  * contention. */
 void net_path_whole(const struct net *n, struct net_message *m)
 {
-    int nhop;
-    const struct net_rate slow = net_slowest(n, m, &nhop);
-    uint32_t node = net_path_tail(n, net_path_hops(n, m->path, nhop + 1, -1), slow, m->bytes);
+    struct net_rate slow;
+    const sim_ps way = net_way(n, m, &slow);
+    uint32_t node = net_path_tail(n, net_path_way(n, m->path, way, -1), slow, m->bytes);
     if (path_time(n->path, node) > m->arrival)
         node = m->path; /* the sender's own messages overlap */
     m->path = path_add(n->path, node, m->arrival, PATH_CONTENTION, -1, -1, -1, 0);

@@ -5,6 +5,7 @@
  * packets of at most p bytes, header h and flits of f bytes, floor((b-1)/p) ceil((p+h)/f) +
  * ceil((last+h)/f) flits. */
 #include "net/net_internal.h"
+#include "net/net_way.h"
 
 int64_t net_packets(const struct net *n, int64_t bytes)
 {
@@ -78,6 +79,29 @@ struct net_rate net_slowest(const struct net *n, const struct net_message *m, in
     for (*nhop = 0; topology_next(n->topology, &c, &h); ++*nhop)
         slow = net_rate_slower(slow, n->link_rate ? n->link_rate[h.link] : n->link);
     return slow;
+}
+
+struct route net_route_begin(const struct net *n, const struct net_message *m)
+{
+    return routing_start(n->routing, m->src, m->dst, net_choice(m));
+}
+
+/* By a rule: the way of its first packet were there nobody else. */
+sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow)
+{
+    int nhop = 0, link;
+    if (!n->routing) {
+        *slow = net_slowest(n, m, &nhop);
+        return (nhop + 1) * n->tau;
+    }
+    struct route p = net_route_begin(n, m);
+    sim_ps cables = 0;
+    *slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
+    for (; routing_empty(n->routing, &p, &link); nhop++) {
+        *slow = net_rate_slower(*slow, n->link_rate ? n->link_rate[link] : n->link);
+        if (n->wire) cables += n->wire[link];
+    }
+    return ps_later((nhop + 1) * n->tau, cables);
 }
 
 int net_head_port(const struct net *n, int resource)

@@ -105,6 +105,16 @@ const char *machine_idle_above_packets(const struct run_spec *r)
     return level == LEVEL_LINK ? "level 'link' moves whole messages" : NULL;
 }
 
+/* Without a rule there is one way on, and every channel of a class is as good. */
+const char *machine_idle_unless_routed(const struct run_spec *r)
+{
+    const char *why = machine_idle_above_packets(r);
+    if (why != NULL) return why;
+    return r->machine.network.routing != ROUTING_DETERMINISTIC
+               ? NULL
+               : "network.routing is 'deterministic'";
+}
+
 const char *machine_idle_unless_server(const struct run_spec *r)
 {
     return r->machine.software.kernel_server ? NULL : "software.kernel.server is off";

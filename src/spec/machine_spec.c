@@ -30,6 +30,12 @@ static const char *const levels[] = {
 #undef X
     [LEVEL_AUTO_TOLERANCE] = "auto-tolerance", NULL};
 static const char *const arbitrations[] = {"round-robin", "first-come", NULL};
+static const char *const rules[] = {
+#define X(constant, word, chance) [constant] = word,
+    ROUTING_LIST(X)
+#undef X
+    NULL};
+static const char *const allocators[] = {"select", "islip", NULL};
 static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
@@ -66,6 +72,12 @@ static const struct field fields[] = {
      .idle = machine_idle_without_links,
      .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; "
             "dragonfly: local, global; hypercube: cube, Xpress), 0: network.link.bandwidth"},
+    {.key = "topology.dim_latency", .kind = FIELD_REALS, .unit = UNIT_TIME,
+     AT(topology.dim_latency),
+     .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1, .fallback = "0 s",
+     .idle = machine_idle_without_links,
+     .doc = "what each dimension's links take longer than network.hop_latency, for long cables; "
+            "dimensions as for topology.dim_bandwidth"},
     {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1,
      .max = 4096,
      .fallback = "1", .idle = machine_idle_with_own_nodes, .doc = "nodes on each router"},
@@ -220,6 +232,12 @@ static const struct field fields[] = {
      .fallback = "round-robin", .idle = machine_idle_above_packets,
      .doc = "arbitration between messages that wait "
                                                                    "for the same link"},
+    {.key = "network.routing", .kind = FIELD_CHOICE, AT(network.routing), .choice = rules,
+     .fallback = "deterministic", .idle = machine_idle_without_links,
+     .doc = "which of several routes a packet takes (docs/network.md)"},
+    {.key = "network.vc_allocator", .kind = FIELD_CHOICE, AT(network.vc_allocator),
+     .choice = allocators, .fallback = "select", .idle = machine_idle_unless_routed,
+     .doc = "how heads get virtual channels: by a routing rule's priorities, or without them"},
 
     /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
      * with sizes that change the protocol. */

@@ -11,6 +11,7 @@
 
 #include "spec/level_list.h"
 #include "spec/price_spec.h"
+#include "spec/routing_list.h"
 #include "spec/software_spec.h"
 #include "spec/topology_list.h"
 
@@ -38,6 +39,7 @@ struct topology_spec {
                                    links/router, groups}; crossbar, bus, full mesh, graph: {routers}
                                  */
     double dim_bandwidth[MACHINE_MAX_DIMS]; /* link rate of each dimension [B/s], 0: the link's */
+    double dim_latency[MACHINE_MAX_DIMS];   /* further latency of each dimension's links [s] */
     int nodes_per_router;           /* >= 1 */
     int processors_per_node;        /* >= 1 */
     enum tie_rule tie;
@@ -108,6 +110,8 @@ struct network_spec {
     int virtual_channels;       /* per link and direction, all classes together */
     int buffer_flits;           /* per virtual channel [flits] */
     enum arbitration arbitration;
+    enum routing_rule routing;      /* which of several routes a packet takes */
+    enum vc_allocator vc_allocator; /* with routing: how heads that ask get channels */
 };
 
 enum placement_kind {

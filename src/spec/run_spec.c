@@ -21,8 +21,10 @@ bool run_spec_is_random(const struct run_spec *r)
     /* Every place that draws from the run's seed. */
     bool valiant = topology_has(f, TOPOLOGY_CHOOSES) && m->topology.routing == ROUTE_VALIANT;
     bool tie = topology_has(f, TOPOLOGY_RINGS) && m->topology.tie == TIE_RANDOM;
+    bool routed = routing_rule_chance(m->network.routing);
     bool order = kernel_spec_has(&r->kernel, PROGRAM_RANDOM);
-    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || order;
+    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || routed ||
+           order;
 }
 
 /* Repetitions of one run draw different numbers; the same repetition always the same ones. */

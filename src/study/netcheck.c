@@ -34,7 +34,7 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
     case NETCHECK_HAND:
         return netcheck_hand_rows(r, c, referred);
     case NETCHECK_LOAD:
-        return netcheck_load_rows(r, c);
+        return netcheck_is_series(c) ? netcheck_series_rows(r, c) : netcheck_load_rows(r, c);
     /* the last form, after the switch: the compiler warns if one is missing here */
     case NETCHECK_SATURATION:
     case NETCHECK_FORMS:

@@ -51,6 +51,7 @@ struct netcheck_row {
     enum topology_family family;
     int channels;     /* virtual channels per link */
     bool cuts;        /* a message is cut into several packets */
+    bool routed;      /* by a routing rule of the reference (netcheck_series.c) */
     bool worms;       /* a packet is longer than a buffer */
     double crowding;  /* load: reference latency over that of the empty network */
     int nmessage;

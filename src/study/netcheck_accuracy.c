@@ -28,7 +28,8 @@ enum {
     TREE = FAMILY(FAT_TREE),
     DRAGONFLY = FAMILY(DRAGONFLY)
 };
-enum channels { ANY_CHANNELS, ONE_CHANNEL, MORE_CHANNELS };
+/* ROUTED: only series that are played by the reference's own routing rule. */
+enum channels { ANY_CHANNELS, ONE_CHANNEL, MORE_CHANNELS, ROUTED };
 
 /* The conditions of one class, and what is stated of it. The first entry whose conditions all
  * hold is taken, so the order is from special to general; the last two have no conditions on
@@ -73,6 +74,19 @@ static const struct entry table[] = {
      {"link", "torus", 0.35, -0.95, 1.00, 9}},
     {LEVEL(LOGGP), MESSAGES, EVERY, ANY_CHANNELS, ALWAYS,
      {"loggp", "lists of messages", 0.50, -0.98, 0.01, 1.1}},
+    /* series by the reference's routing rules */
+    {LEVEL(FLIT), FORM(LOAD), EVERY, ROUTED, 1.6,
+     {"flit", "by routing rules, up to 1.6 times the empty network's latency",
+      0.02, -0.08, 0.05, NONE}},
+    {LEVEL(FLIT), FORM(LOAD), EVERY, ROUTED, ALWAYS,
+     {"flit", "by routing rules, above", 0.12, -0.30, 0.15, NONE}},
+    {LEVEL(FLIT), FORM(SATURATION), EVERY, ROUTED, ALWAYS,
+     {"flit", "by routing rules, load at saturation", 0.05, -0.05, 0.12, NONE}},
+    {CUT_THROUGH, FORM(LOAD), EVERY, ROUTED, 1.6,
+     {"packet, auto", "by routing rules, up to 1.6 times the empty network's latency",
+      0.06, -0.20, 0.20, NONE}},
+    {EVERY, SERIES, EVERY, ROUTED, ALWAYS,
+     {"all", "by routing rules, otherwise", 0.50, -0.99, 3.00, NONE}},
     /* latency under random load */
     {LEVEL(LOGGP), FORM(LOAD), EVERY, ANY_CHANNELS, ALWAYS,
      {"loggp", "random loads", 0.35, -0.995, 0.20, NONE}},
@@ -132,8 +146,9 @@ const struct netcheck_accuracy *netcheck_accuracies(int i)
  * bits. */
 static bool fits(const struct entry *t, const struct netcheck_row *row, enum network_level level)
 {
-    bool channels =
-        t->channels == ANY_CHANNELS || (t->channels == ONE_CHANNEL) == (row->channels == 1);
+    bool channels = t->channels == ANY_CHANNELS ||
+                    (t->channels == ROUTED ? row->routed
+                                           : (t->channels == ONE_CHANNEL) == (row->channels == 1));
     return t->levels >> level & 1 && t->forms >> row->form & 1 && t->families >> row->family & 1 &&
            channels && row->crowding <= t->crowding;
 }

@@ -86,7 +86,7 @@ static double mean_latency(const struct netcheck_question *k, const sim_ps *arri
     double sum = 0;
     int64_t n = 0;
     for (int i = 0; i < k->q.nmessage; i++) {
-        if (k->q.time[i] < k->warm) continue;
+        if (k->q.time[i] < k->warm || (k->until > 0 && k->q.time[i] >= k->until)) continue;
         sum += (double)(arrival[i] - k->q.time[i]) / NETCHECK_CYCLE_PS;
         n++;
     }
@@ -95,7 +95,7 @@ static double mean_latency(const struct netcheck_question *k, const sim_ps *arri
 
 /* Relative error against the band low .. high: 0 inside, else to its nearer end. A case with one
  * answer has low = high. */
-static double error_of(const struct netcheck_row *row, double found)
+double netcheck_error(const struct netcheck_row *row, double found)
 {
     /* the point of the band that is closest to the answer */
     double nearest = fmin(fmax(found, row->low), row->high);
@@ -127,7 +127,7 @@ static void judge(const struct netcheck_question *k, const struct traffic_result
     answer->found =
         k->latency ? mean_latency(k, r->arrival) : (double)r->makespan / NETCHECK_CYCLE_PS;
     if (row->played) answer->arrival = cycles_of(r->arrival, k->q.nmessage, k->rows);
-    else answer->error = error_of(row, answer->found);
+    else answer->error = netcheck_error(row, answer->found);
     if (row->compared) compare_messages(k, r->arrival, answer);
 }
 
@@ -193,6 +193,29 @@ void netcheck_ask(struct netcheck_question *k)
     }
 }
 
+bool netcheck_mean(struct netcheck_question *k, enum network_level level, double *latency)
+{
+    struct err e;
+    struct traffic_result r;
+    struct netcheck_answer *answer = &k->row->answer[level];
+    struct arena_mark mark = arena_mark(k->arena);
+    sizes_of(k);
+    bool done = fits_buffers(k, level, answer);
+    if (done) {
+        done = play(k, level, &r, &e);
+        if (!done) text_copy(answer->why, sizeof answer->why, e.text);
+    }
+    if (done) {
+        answer->events += r.events;
+        answer->deadlock = r.deadlock;
+        if (r.deadlock) text_copy(answer->why, sizeof answer->why, r.text);
+        else *latency = mean_latency(k, r.arrival);
+        done = !r.deadlock;
+    }
+    arena_release(k->arena, mark);
+    return done;
+}
+
 /* ---- saturation: the load at which the mean latency is three times the empty network's ---- */
 
 enum { SATURATION_CYCLES = 10000, SATURATION_SEED = 1 };
@@ -256,7 +279,7 @@ static void ask_one_saturation(struct netcheck_question *k, enum network_level l
     }
     answer->ran = true;
     answer->found = fmin((below + above) / 2, 1);
-    answer->error = error_of(k->row, answer->found);
+    answer->error = netcheck_error(k->row, answer->found);
 }
 
 /* loggp has no contention at all: its latency does not depend on the load. */

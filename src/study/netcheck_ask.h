@@ -18,7 +18,7 @@ struct netcheck_question {
     bool any_order;        /* arrivals agree as sets */
     /* the answer is the mean latency of messages from `warm` on, not the makespan */
     bool latency;
-    sim_ps warm;
+    sim_ps warm, until; /* and born before `until`, 0: all */
     double channel;      /* what the reference's channels add to the mean latency [cycles] */
     struct arena *arena; /* scratch */
     struct arena *rows;  /* of what the row keeps */
@@ -33,6 +33,13 @@ double netcheck_empty_latency(const struct netcheck_question *k);
 
 /* netcheck_ask: fill the row's answers at the levels wanted. */
 void netcheck_ask(struct netcheck_question *k);
+
+/* netcheck_mean: the mean latency of k's list at `level` [cycles]. False: the level cannot say, and
+ * the answer has the reason; a deadlock is one. */
+bool netcheck_mean(struct netcheck_question *k, enum network_level level, double *latency);
+
+/* netcheck_error: relative error of `found` against the row's band; 0 inside. */
+double netcheck_error(const struct netcheck_row *row, double found);
 
 /* netcheck_ask_saturation: fill them with the load at which the mean latency of `pattern` is three
  * times `empty`, sought from the reference's bracket outwards. */

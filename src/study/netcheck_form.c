@@ -128,6 +128,35 @@ static const struct key load_keys[] = {
     {NULL, IGNORED},
 };
 
+/* A series with its routing rule and three seeds: the same, and all that the rule depends on. */
+static const struct key series_keys[] = {
+    LOAD_KEYS,
+    {"points", NEEDED},
+    {"routing_function", NEEDED},
+    {"vc_allocator", NEEDED},
+    {"warmup_cycles", NEEDED},
+    {"sample_cycles", NEEDED},
+    {"topology_params", NEEDED},
+    {"saturation", ALIKE},
+    {"permutation", READ},
+    {"booksim_routing", IGNORED},
+    {"overdriven_accepted", IGNORED},
+    {"abort_latency", IGNORED},
+    {"zero_load_latency_at", IGNORED},
+    {"seeds", IGNORED},
+    {NULL, IGNORED},
+};
+
+/* One point of a series: the mean over the seeds, and their range. */
+static const struct key seeds_keys[] = {
+    {"offered", NEEDED},        {"plat", ANSWER},      {"plat_min", ANSWER},  {"plat_max", ANSWER},
+    {"unstable", NEEDED},       {"hops", ALIKE},       {"cycles", IGNORED},   {"nlat", IGNORED},
+    {"nlat_min", IGNORED},      {"nlat_max", IGNORED}, {"accepted", IGNORED}, {"hops_min", IGNORED},
+    {"hops_max", IGNORED},      {"seeds", IGNORED},    {"n_seeds", IGNORED},
+    {"accepted_min", IGNORED},  {"accepted_max", IGNORED},
+    {NULL, IGNORED},
+};
+
 /* One point of a load: what the reference measured at the load `offered`. */
 static const struct key point_keys[] = {
     {"offered", NEEDED}, {"plat", ANSWER},    {"cycles", ANSWER}, {"unstable", ALIKE},
@@ -180,6 +209,11 @@ static const struct {
     {"distance", NODE_NUMBER, NETCHECK_STEP},
 };
 
+bool netcheck_is_series(const struct node *c)
+{
+    return document_find(c, "vc_allocator") != NULL;
+}
+
 /* The table of a form; a step without arrivals but with makespans by variant is a band. */
 static const struct key *keys_of(const struct node *c, enum netcheck_form form)
 {
@@ -190,6 +224,7 @@ static const struct key *keys_of(const struct node *c, enum netcheck_form form)
                                               [NETCHECK_SATURATION] = saturation_keys};
     bool band =
         form == NETCHECK_STEP && !document_find(c, "completion") && !document_find(c, "makespan");
+    if (form == NETCHECK_LOAD && netcheck_is_series(c)) return series_keys;
     return band && document_find(c, "makespan_by_variant") ? band_keys : table[form];
 }
 
@@ -356,9 +391,11 @@ bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c,
 bool netcheck_keys_of_point(struct netcheck_reader *r, const struct node *point)
 {
     bool unstable = false;
+    /* Only points of a series have a range. */
+    const bool series = document_find(point, "n_seeds") != NULL;
+    const struct key *keys = series ? seeds_keys : point_keys;
     return netcheck_truth(r, point, "unstable", &unstable) &&
-           look_at(r, point, point_keys, !unstable, false) &&
-           (unstable || alike(r, point, point_keys));
+           look_at(r, point, keys, !unstable, false) && (unstable || alike(r, point, keys));
 }
 
 bool netcheck_keys_of_trace(struct netcheck_reader *r, const struct node *trace, bool referred)

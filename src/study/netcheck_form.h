@@ -37,6 +37,10 @@ struct netcheck_reader {
     struct netcheck_alike alike[8];
 };
 
+/* netcheck_is_series: whether a case of a load names the routing rule and its allocator, and is
+ * played by that rule (netcheck_series.c). */
+bool netcheck_is_series(const struct node *c);
+
 /* netcheck_form_of: the form of case c and whether it has reference answers; its keys looked at.
  * Returns false with ERR_DATA: no known form (which are known), a key missing or misspelt. */
 bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netcheck_form *form,

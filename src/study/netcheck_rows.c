@@ -89,9 +89,8 @@ bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c,
            netcheck_integer(r, c, "max_packet_flits", 1, NETCHECK_MOST_FLITS, 0, &s->packet_flits);
 }
 
-/* Cycles that a head takes over a router, by the name of its pipeline. Returns 0 with ERR_DATA
- * for an unknown name. */
-static int head_cycles(struct netcheck_reader *r, const struct node *c)
+/* By the name of its pipeline. */
+int netcheck_head_cycles(struct netcheck_reader *r, const struct node *c)
 {
     const char *pipeline;
     if (!netcheck_word(r, c, "pipeline", &pipeline)) return 0;
@@ -132,7 +131,7 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c,
     struct err why;
     struct topology_spec *t = TAKE(r->arena, 1, struct topology_spec);
     struct netcheck_row *row = k->row;
-    int head = head_cycles(r, c), nodes, channels = s->channels, tie = s->tie;
+    int head = netcheck_head_cycles(r, c), nodes, channels = s->channels, tie = s->tie;
     err_clear(&why);
     if (head == 0) return false;
     /* The group in which the row is counted: family, channels, buffers and pipeline. */

@@ -29,6 +29,9 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c,
                       const struct netcheck_setting *s, struct netcheck_question *k);
 bool netcheck_told(const struct netcheck_reader *r);
 
+/* netcheck_head_cycles: cycles that a head takes over a router of case c; 0 with ERR_DATA. */
+int netcheck_head_cycles(struct netcheck_reader *r, const struct node *c);
+
 /* netcheck_flaw: note that the reference says `found` of `what` where the case makes it `expected`;
  * the first one counts. netcheck_flaw_of_key: the same for the number `key` of c, if it is
  * there. */
@@ -49,6 +52,7 @@ bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool re
 bool netcheck_list_rows(struct netcheck_reader *r, const struct node *c, bool referred);
 bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool referred);
 bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c);
+bool netcheck_series_rows(struct netcheck_reader *r, const struct node *c);
 bool netcheck_saturation_rows(struct netcheck_reader *r, const struct node *c);
 
 #endif

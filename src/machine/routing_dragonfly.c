@@ -1,0 +1,82 @@
+/* routing_dragonfly.c - dragonflies as BookSim routes them: minimal, or UGAL with the intermediate
+ * node drawn from the whole system and one comparison at the source.
+ *
+ * The channel is the order of a packet's stages: on the way to the intermediate router, then up to
+ * the global link that leads to the destination's group, then from there on. Channels only rise. */
+#include "machine/routing_internal.h"
+#include "machine/topology_internal.h"
+
+enum { BIAS = 30, MINIMAL_CHANNELS = 2, UGAL_CHANNELS = 3 };
+
+static bool dragonfly_create(struct routing *r, struct arena *a, struct err *e)
+{
+    (void)a;
+    const bool ugal = r->rule == ROUTING_BOOKSIM_UGAL;
+    r->by_load = ugal;
+    r->max_hops = (ugal ? 2 : 1) * r->topology->max_hops;
+    return routing_needs(r, ugal ? UGAL_CHANNELS : MINIMAL_CHANNELS, "a channel for each stage", e);
+}
+
+/* Into the network over one channel, drawn by chance. */
+static int dragonfly_inject(const struct routing *r, struct route *p, int *first)
+{
+    *first = routing_draw(p, r->channels);
+    return 1;
+}
+
+static int group_of(const struct routing *r, int router)
+{
+    return router / r->topology->spec->dims[1];
+}
+
+static int64_t first_queue(const struct routing *r, const struct routing_view *view, int src,
+                           int dst)
+{
+    struct route_cursor c = topology_start(r->topology, src, dst, 0);
+    struct hop h;
+    return topology_next(r->topology, &c, &h) ? routing_used(view, h.link) : 0;
+}
+
+/* part: the stage of UGAL: 0 to the intermediate router, 1 to the global link, 2 after it and
+ * inside a group. The queue of the minimal way may be twice the other's and BIAS flits longer. */
+static void ugal_choose(const struct routing *r, struct route *p, const struct routing_view *view)
+{
+    p->part = 2;
+    if (group_of(r, p->router) == group_of(r, p->target)) return;
+    p->part = 1;
+    p->via = routing_draw(p, r->topology->nnode);
+    if (group_of(r, topology_router_of(r->topology, p->via)) == group_of(r, p->router)) return;
+    const int64_t near = first_queue(r, view, p->source, p->node),
+                  far = first_queue(r, view, p->source, p->via);
+    if (near > 2 * far + BIAS) p->part = 0;
+}
+
+static int dragonfly_next(const struct routing *r, struct route *p, const struct routing_view *view,
+                          struct route_option *option)
+{
+    const struct topology *t = r->topology;
+    const bool ugal = r->rule == ROUTING_BOOKSIM_UGAL;
+    struct hop h;
+    if (p->channel < 0) {
+        if (ugal) ugal_choose(r, p, view);
+        p->leg = topology_start(t, p->source, ugal && p->part == 0 ? p->via : p->node, 0);
+    }
+    if (ugal && p->part == 0 && p->router == topology_router_of(t, p->via)) {
+        p->part = 1;
+        p->leg = topology_start(t, p->via, p->node, 0);
+    }
+    if (!topology_next(t, &p->leg, &h)) return 0;
+    /* A global link ends the stage: dim 1 of a dragonfly's links. */
+    const bool global = t->type->rate_dim(t, h.link) == 1;
+    const int last = ugal ? 2 : 1, part = global && !(ugal && p->part == 0) ? last : p->part;
+    *option = (struct route_option){.link = h.link, .first = part, .count = 1, .part = part};
+    return 1;
+}
+
+enum { DRAGONFLIES = 1 << TOPOLOGY_DRAGONFLY };
+
+const struct routing_type routing_dragonfly_types[] = {
+    {ROUTING_BOOKSIM_MIN, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next},
+    {ROUTING_BOOKSIM_UGAL, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next},
+    {0, 0, NULL, NULL, NULL},
+};

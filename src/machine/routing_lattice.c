@@ -1,0 +1,273 @@
+/* routing_lattice.c - rules on meshes, tori, hypercubes and HyperX networks that go by dimensions:
+ * in order, in either order, through an intermediate router.
+ *
+ * On a ring the rules of BookSim choose a packet's class when it enters the dimension, 1 if its way
+ * passes the edge, and keep it in that dimension: a packet of class 1 goes at most half way round,
+ * so that the links of class 1 never wait for each other all around. */
+#include "machine/routing_lattice.h"
+
+/* ---- the lattice ---- */
+
+/* Radix and stride of every dimension; a hypercube is a mesh of two routers in each. */
+static void lattice_shape(struct lattice *g, const struct topology_spec *s)
+{
+    const bool cube = s->family == TOPOLOGY_HYPERCUBE;
+    int stride = 1;
+    g->ndim = cube ? s->dims[0] : s->ndim;
+    g->wraps = s->family == TOPOLOGY_TORUS;
+    g->direct = !cube && !g->wraps && s->family != TOPOLOGY_MESH;
+    for (int d = 0; d < g->ndim; d++) {
+        g->radix[d] = cube ? 2 : s->dims[d];
+        g->stride[d] = stride;
+        g->first[d] = g->degree;
+        g->degree += g->direct ? g->radix[d] : 2;
+        stride *= g->radix[d];
+        g->diameter += g->direct ? 1 : g->wraps ? g->radix[d] / 2 : g->radix[d] - 1;
+    }
+}
+
+struct lattice *lattice_create(const struct routing *r, struct arena *a)
+{
+    const struct topology *t = r->topology;
+    struct lattice *g = TAKE(a, 1, struct lattice);
+    lattice_shape(g, t->spec);
+    g->out = TAKE(a, size_product((size_t)t->nrouter, (size_t)g->degree), int);
+    for (int i = 0; i < t->nrouter * g->degree; i++) g->out[i] = -1;
+    for (int link = 0; link < t->nlink; link++) {
+        int from, to, port;
+        topology_link_ends(t, link, &from, &to, &port);
+        const int d = lattice_dimension(g, from, to, false);
+        /* The links beside a hypercube's own differ in all dimensions or come later. */
+        if (to != from + (lattice_at(g, to, d) - lattice_at(g, from, d)) * g->stride[d]) continue;
+        /* On a ring of two the ports tell the two links apart: from below, or from above. */
+        const int way = g->wraps ? port % 2 == 0 : to < from;
+        int *slot =
+            &g->out[from * g->degree + g->first[d] + (g->direct ? lattice_at(g, to, d) : way)];
+        if (*slot < 0) *slot = link;
+        else if (from == 0) g->bundle[d] = link - *slot;
+    }
+    for (int d = 0; d < g->ndim; d++) g->bundle[d] = g->direct ? g->bundle[d] + 1 : 1;
+    return g;
+}
+
+int lattice_dimension(const struct lattice *g, int from, int to, bool descending)
+{
+    for (int i = 0; i < g->ndim; i++) {
+        const int d = descending ? g->ndim - 1 - i : i;
+        if (lattice_at(g, from, d) != lattice_at(g, to, d)) return d;
+    }
+    return -1;
+}
+
+int lattice_link(const struct lattice *g, const struct route *p, int d, int to, int way)
+{
+    const int *row = &g->out[p->router * g->degree + g->first[d]];
+    /* The cable of a bundle by the packet's number, without a draw: loads do not matter to it. */
+    if (g->direct) return row[to] + (int)(p->choice % (uint64_t)g->bundle[d]);
+    return row[way];
+}
+
+int lattice_way(const struct lattice *g, int d, int x, int y)
+{
+    const int k = g->radix[d];
+    if (!g->wraps) return y < x;
+    const int up = (y - x + k) % k;
+    return 2 * up == k ? -1 : 2 * up > k;
+}
+
+/* ---- dimension order ---- */
+
+/* The one way on to router `to` by order of dimensions. On a ring: straight on in the dimension of
+ * the last link, else the shorter way, of equals by chance, and its class. */
+static struct route_option in_order(const struct lattice *g, struct route *p, int to,
+                                    bool descending)
+{
+    const int d = lattice_dimension(g, p->router, to, descending);
+    const int x = lattice_at(g, p->router, d), y = lattice_at(g, to, d);
+    struct route_option o = {.part = p->part};
+    int way;
+    if (g->wraps && p->last >= 0 && p->last / 2 == d) {
+        way = p->last % 2;
+    } else {
+        way = lattice_way(g, d, x, y);
+        if (way < 0) way = !routing_draw(p, 2);
+        o.part = lattice_crosses(g, x, y, way);
+    }
+    o.last = 2 * d + way;
+    o.link = lattice_link(g, p, d, y, way);
+    return o;
+}
+
+static bool order_create(struct routing *r, struct arena *a, struct err *e)
+{
+    struct lattice *g = lattice_create(r, a);
+    r->state = g;
+    r->max_hops = g->diameter;
+    return routing_needs(r, g->wraps ? 2 : 1, "two halves of the ring", e);
+}
+
+/* Mesh and HyperX: any channel. Torus: the half of its class. */
+static int order_next(const struct routing *r, struct route *p, const struct routing_view *view,
+                      struct route_option *option)
+{
+    const struct lattice *g = r->state;
+    (void)view;
+    if (p->router == p->target) return 0;
+    *option = in_order(g, p, p->target, false);
+    option->count = r->channels;
+    if (g->wraps) option->count = routing_half(r, option->part, &option->first);
+    return 1;
+}
+
+/* ---- either order ---- */
+
+static bool either_create(struct routing *r, struct arena *a, struct err *e)
+{
+    struct lattice *g = lattice_create(r, a);
+    r->state = g;
+    r->max_hops = g->diameter;
+    r->by_load = r->rule == ROUTING_ADAPTIVE_XY_YX;
+    return routing_needs(r, 2, "one half for each order of dimensions", e);
+}
+
+/* The order is chosen at the source and kept; each has its half of the channels, so that neither
+ * waits for the other. phase: 0 ascending, 1 descending. */
+static int either_next(const struct routing *r, struct route *p, const struct routing_view *view,
+                       struct route_option *option)
+{
+    const struct lattice *g = r->state;
+    if (p->router == p->target) return 0;
+    if (p->channel < 0) {
+        int64_t up = 0, down = 0;
+        if (r->by_load) {
+            up = routing_used(view, in_order(g, p, p->target, false).link);
+            down = routing_used(view, in_order(g, p, p->target, true).link);
+        }
+        p->phase = up == down ? !routing_draw(p, 2) : up > down;
+    }
+    *option = in_order(g, p, p->target, p->phase);
+    option->count = routing_half(r, p->phase, &option->first);
+    return 1;
+}
+
+/* ---- through an intermediate router ---- */
+
+static bool through_create(struct routing *r, struct arena *a, struct err *e)
+{
+    struct lattice *g = lattice_create(r, a);
+    r->state = g;
+    r->max_hops = 2 * g->diameter;
+    return routing_needs(r, g->wraps ? 4 : 2, "classes for each leg", e);
+}
+
+/* ROMM (Nesson and Johnsson 1995): a router of the box that both ends span, the smaller box on a
+ * ring. Valiant: the router of any node. */
+static int through_choose(const struct routing *r, struct route *p)
+{
+    const struct lattice *g = r->state;
+    if (r->rule == ROUTING_BOOKSIM_VALIANT)
+        return topology_router_of(r->topology, routing_draw(p, r->topology->nnode));
+    int via = 0;
+    for (int d = 0; d < g->ndim; d++) {
+        const int x = lattice_at(g, p->router, d), y = lattice_at(g, p->target, d);
+        int way = lattice_way(g, d, x, y), k = g->radix[d];
+        if (way < 0) way = routing_draw(p, 2);
+        const int span = way ? (x - y + k) % k : (y - x + k) % k;
+        const int step = routing_draw(p, span + 1);
+        via += (way ? x - step + k : x + step) % k * g->stride[d];
+    }
+    return via;
+}
+
+/* A quarter of the channels: by class on the ring, then by leg. */
+static int quarter(const struct routing *r, int part, int leg, int *first)
+{
+    int n = routing_half(r, part, first), upper = r->channels / 2 / 2, lower = n - upper;
+    if (leg) *first += lower;
+    return leg ? upper : lower;
+}
+
+/* On a HyperX a packet that meets its destination on the first leg is there. */
+static int through_next(const struct routing *r, struct route *p, const struct routing_view *view,
+                        struct route_option *option)
+{
+    const struct lattice *g = r->state;
+    (void)view;
+    if (p->channel < 0) p->via = through_choose(r, p);
+    if (p->phase == 0 && (p->router == p->via || (g->direct && p->router == p->target))) {
+        p->phase = 1;
+        p->last = -1;
+    }
+    if (p->phase == 1 && p->router == p->target) return 0;
+    *option = in_order(g, p, p->phase ? p->target : p->via, false);
+    option->count = g->wraps ? quarter(r, option->part, p->phase, &option->first)
+                             : routing_half(r, p->phase, &option->first);
+    return 1;
+}
+
+/* ---- UGAL on a flattened butterfly, as BookSim has it ---- */
+
+static bool butterfly_create(struct routing *r, struct arena *a, struct err *e)
+{
+    r->state = lattice_create(r, a);
+    r->max_hops = 2 * r->topology->max_hops;
+    r->by_load = true;
+    return routing_needs(r, 2, "one half for each leg", e);
+}
+
+static int distance(const struct lattice *g, int from, int to)
+{
+    int n = 0;
+    for (int d = 0; d < g->ndim; d++) n += lattice_at(g, from, d) != lattice_at(g, to, d);
+    return n;
+}
+
+/* Once, at the source: minimal if its queue times its links is at most two flits above that of the
+ * other way. The intermediate router differs only in dimensions in which the ends differ. */
+static void butterfly_choose(const struct lattice *g, struct route *p,
+                             const struct routing_view *view)
+{
+    enum { THRESHOLD = 2 };
+    int via = 0;
+    for (int d = 0; d < g->ndim; d++) {
+        const int x = lattice_at(g, p->router, d);
+        const bool same = x == lattice_at(g, p->target, d);
+        via += (same ? x : routing_draw(p, g->radix[d])) * g->stride[d];
+    }
+    p->phase = 1;
+    if (via == p->router) return;
+    const int64_t near = routing_used(view, in_order(g, p, p->target, false).link),
+                  far = routing_used(view, in_order(g, p, via, false).link);
+    const int there = distance(g, p->router, via) + distance(g, via, p->target);
+    if (distance(g, p->router, p->target) * near <= there * far + THRESHOLD) return;
+    p->via = via;
+    p->phase = 0;
+}
+
+static int butterfly_next(const struct routing *r, struct route *p, const struct routing_view *view,
+                          struct route_option *option)
+{
+    const struct lattice *g = r->state;
+    if (p->channel < 0 && p->router != p->target) butterfly_choose(g, p, view);
+    if (p->phase == 0 && p->router == p->via) p->phase = 1;
+    if (p->router == p->target && (p->phase == 1 || p->via < 0)) return 0;
+    *option = in_order(g, p, p->phase ? p->target : p->via, false);
+    option->count = routing_half(r, p->phase, &option->first);
+    return 1;
+}
+
+enum {
+    MESHES = 1 << TOPOLOGY_MESH | 1 << TOPOLOGY_HYPERCUBE,
+    GRIDS = MESHES | 1 << TOPOLOGY_TORUS,
+    DIRECT = 1 << TOPOLOGY_HYPERX
+};
+
+const struct routing_type routing_lattice_types[] = {
+    {ROUTING_BOOKSIM_DIM_ORDER, GRIDS | DIRECT, order_create, NULL, order_next},
+    {ROUTING_XY_YX, MESHES | DIRECT, either_create, NULL, either_next},
+    {ROUTING_ADAPTIVE_XY_YX, MESHES | DIRECT, either_create, NULL, either_next},
+    {ROUTING_ROMM, GRIDS, through_create, NULL, through_next},
+    {ROUTING_BOOKSIM_VALIANT, GRIDS | DIRECT, through_create, NULL, through_next},
+    {ROUTING_BOOKSIM_UGAL, DIRECT, butterfly_create, NULL, butterfly_next},
+    {0, 0, NULL, NULL, NULL},
+};

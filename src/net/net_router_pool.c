@@ -1,0 +1,68 @@
+/* net_router_pool.c - records of net_router.h: lanes where they are first used, legs and worms out
+ * of pools, so that a steady load allocates nothing. */
+#include "net/net_router.h"
+
+struct lane *router_lanes(struct routers *g, int p)
+{
+    struct port *o = &g->port[p];
+    if (o->lane) return o->lane;
+    const struct net *n = g->fabric.net;
+    const int count = g->fabric.nchannel;
+    const int64_t buffer = net_is_ejection(n, p) ? 0 : g->fabric.buffer;
+    o->lane = TAKE(n->arena, count, struct lane);
+    sim_ps *slot =
+        buffer ? TAKE(n->arena, size_product((size_t)count, (size_t)buffer), sim_ps) : NULL;
+    for (int i = 0; i < count; i++) {
+        o->lane[i].port = p;
+        o->lane[i].channel = i;
+        if (slot) o->lane[i].slot = slot + i * buffer;
+    }
+    return o->lane;
+}
+
+struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v)
+{
+    enum { CHUNK = 128 };
+    if (!g->free_leg) {
+        struct leg *chunk = TAKE(g->fabric.net->arena, CHUNK, struct leg);
+        for (int i = 0; i < CHUNK; i++) router_leg_return(g, &chunk[i]);
+    }
+    struct leg *l = g->free_leg;
+    g->free_leg = l->behind;
+    *l = (struct leg){.worm = w, .port = v->port, .channel = v->channel};
+    v->owner = l;
+    /* The sink has no FIFO: it takes what comes. */
+    if (net_is_ejection(g->fabric.net, v->port)) return l;
+    *(v->front ? &v->back->behind : &v->front) = l;
+    v->back = l;
+    return l;
+}
+
+void router_leg_return(struct routers *g, struct leg *l)
+{
+    l->behind = g->free_leg;
+    g->free_leg = l;
+}
+
+/* Each packet of a message chooses for itself; the first one as the message would. */
+struct worm *router_worm(struct routers *g, struct flight *m)
+{
+    enum { CHUNK = 64 };
+    if (!g->free_worm) {
+        struct worm *chunk = TAKE(g->fabric.net->arena, CHUNK, struct worm);
+        for (int i = 0; i < CHUNK; i++) router_worm_return(g, &chunk[i]);
+    }
+    struct worm *w = g->free_worm;
+    g->free_worm = w->next;
+    *w = (struct worm){.flight = m, .index = m->injected};
+    w->flits = flight_packet_flits(m, w->index);
+    const uint64_t choice = net_choice(m->m) + (uint64_t)w->index * 0xd1342543de82ef95u;
+    w->route = routing_start(g->routing, m->m->src, m->m->dst, choice);
+    return w;
+}
+
+void router_worm_return(struct routers *g, struct worm *w)
+{
+    w->next = g->free_worm;
+    g->free_worm = w;
+}
