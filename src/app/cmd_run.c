@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/arguments.h"
+#include "app/backend.h"
 #include "app/campaign_mpi.h"
 #include "app/flag.h"
 #include "app/interrupt.h"
@@ -352,6 +353,8 @@ int cmd_run(int argc, char **argv)
     struct job job = {.kept = -1};
     struct err e;
     err_clear(&e);
+    const char *backend = take_value(&argc, argv, "--backend");
+    if (backend != NULL) return backend_run(argc, argv, backend);
     const char *campaign = take_value(&argc, argv, "--campaign"),
                *spread = take_value(&argc, argv, "--spread");
     const bool understood = take_options(&argc, argv, &asked, &e);

@@ -16,6 +16,9 @@
     X("run", "campaign", "WAY", "mpi: the processes that mpirun started share the plan")           \
     X("run", "spread", "WAY",                                                                      \
       "mpi: the processes that mpirun started share the ranks of each run")                        \
+    X("run", "backend", "WAY",                                                                     \
+      "mpi: run for real, on the processes that mpirun started, instead of simulating")            \
+    X("run", "samples", "N", "with --backend: undisturbed repetitions wanted (default 30)")        \
     X("run", "threads", "N|auto", "host threads for each run (default auto)")                      \
     X("run", "uncertainty", "N",                                                                   \
       "draw the machine's uncertain parameters N times: bands and shares")                         \

@@ -51,6 +51,9 @@ struct comm_type {
     void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data);
     void (*elapse)(struct comm *c, int64_t ps);
     void (*end_run)(struct comm *c, const char *text); /* never returns */
+    /* Where time is this computer's: the program's own time begins here (1), or ends (0). NULL:
+     * time is simulated. */
+    void (*mark)(struct comm *c, int begin);
 
     /* comm_match.h */
     void (*isend_synchronous)(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,

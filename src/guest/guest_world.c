@@ -91,7 +91,7 @@ static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, f
 static bool price_blocks(struct guest_world *w, struct err *e)
 {
     const struct node_cost told = {.instruction = 1};
-    if (w->cost == PROGRAM_COST_AUTHOR) return true;
+    if (w->cost == PROGRAM_COST_AUTHOR || w->cost == PROGRAM_COST_REAL) return true;
     if (w->cost == PROGRAM_COST_HOST) return loader_price_blocks(w->image, &told, 1, e);
     return loader_price_blocks(w->image, &w->node, w->spec->program.factor, e);
 }
@@ -171,7 +171,9 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
      * clock. */
     struct loader_outcome end = loader_start(g->instance, 1, argv);
     const int64_t argument[4] = {(int64_t)(intptr_t)g};
+    if (c->type->mark != NULL) c->type->mark(c, 1);
     if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);
+    if (c->type->mark != NULL) c->type->mark(c, 0);
     if (end.exited) refuse_exit(g, end.status);
     loader_exit(g->instance, 0);
     guest_rank_end_lines(g);

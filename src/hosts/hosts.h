@@ -12,9 +12,10 @@
 #include <stdint.h>
 
 #include "base/err.h"
+#include "hosts/lane.h"
 
 enum { HOSTS_ANY = -1 };  /* any sender, any tag */
-enum { HOSTS_TABLE = 1 }; /* to be raised when the table below changes */
+enum { HOSTS_TABLE = 2 }; /* to be raised when the table below changes */
 
 enum hosts_reduction { HOSTS_SUM, HOSTS_LEAST, HOSTS_LARGEST };
 
@@ -55,6 +56,7 @@ struct hosts_calls {
     bool (*gather)(const int64_t *value, int n, int64_t *all);
     /* abort: end all processes at once with this exit status. */
     void (*abort)(int status);
+    const struct lane_calls *lane; /* messages of programs that run for real */
 };
 
 struct hosts {

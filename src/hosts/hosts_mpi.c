@@ -97,8 +97,9 @@ static void abort_all(int status) { MPI_Abort(MPI_COMM_WORLD, status); }
 #endif
 
 /* What hosts.c looks for. */
+extern const struct lane_calls mimdsim_lane;
 extern const struct hosts_calls mimdsim_hosts;
 const struct hosts_calls mimdsim_hosts = {
-    HOSTS_TABLE, LIBRARY, begin,   end,    send,   send_begin,
-    send_done,   look,    receive, reduce, gather, abort_all,
+    HOSTS_TABLE, LIBRARY, begin,   end,    send,   send_begin, send_done,
+    look,        receive, reduce,  gather, abort_all, &mimdsim_lane,
 };

@@ -3,6 +3,7 @@
 #include "program/program.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -16,6 +17,31 @@ void program_want(struct program_run *r, int output, int64_t n, struct arena *a)
 
 /* Zeros until a rank publishes its part. */
 double *program_output(const struct program_run *r, int output) { return r->output[output].x; }
+
+/* Programs without a keeping of their own have it in the run's outputs. */
+const double *program_answer(const struct program_run *r, int output, int64_t *n)
+{
+    if (r->type->answer != NULL) return r->type->answer(r, output, n);
+    *n = output < PROGRAM_OUTPUTS && r->output[output].x != NULL ? r->output[output].n : 0;
+    return *n > 0 ? r->output[output].x : NULL;
+}
+
+/* From another process: what would be outside is a damaged message, or a program's mistake. */
+bool program_take(struct program_run *r, int output, int64_t first, int64_t n, const double *data,
+                  char *why, int size)
+{
+    if (r->type->take != NULL) return r->type->take(r, output, first, n, data, why, size);
+    /* What nobody wants is not kept, as in comm_publish_here. */
+    if (output < 0 || output >= PROGRAM_OUTPUTS || r->output[output].x == NULL) return true;
+    const struct comm_output *o = &r->output[output];
+    if (first < 0 || n < 0 || first > o->n - n) {
+        snprintf(why, (size_t)size, "elements %lld to %lld of output %d, which has %lld",
+                 (long long)first, (long long)(first + n - 1), output, (long long)o->n);
+        return false;
+    }
+    if (n > 0) memcpy(o->x + first, data, (size_t)n * sizeof *data);
+    return true;
+}
 
 /* What the order of the run puts back is computed, and so it is not listed. */
 void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what,

@@ -24,7 +24,6 @@
 #include "comm/comm.h"
 #include "measure/run_result.h"
 #include "spec/run_spec.h"
-
 enum { PROGRAM_OUTPUTS = 12 };
 /* What every rank executes. `job` is the program's own, shared by all ranks and read-only to
  * them. */
@@ -136,12 +135,21 @@ struct program_type {
      * texts), into out (2); what the settings alone decide is in the fields' tables. Returns how
      * many. After open. NULL: none. */
     int (*unused)(const struct program_run *r, const char **out);
+
+    const double *(*answer)(const struct program_run *r, int output, int64_t *n);
+    bool (*take)(struct program_run *r, int output, int64_t, int64_t, const double *, char *, int);
 };
 
 /* program_want: output number `output` gathers n numbers, zero before, from `a`. program_output:
  * them, or NULL. */
 void program_want(struct program_run *r, int output, int64_t n, struct arena *a);
 double *program_output(const struct program_run *r, int output);
+
+/* program_answer: the *n numbers of an output when the ranks have run, NULL: none. program_take: n
+ * elements that a rank of another process published; false: a clause in `why`. */
+const double *program_answer(const struct program_run *r, int output, int64_t *n);
+bool program_take(struct program_run *r, int output, int64_t first, int64_t n, const double *data,
+                  char *why, int size);
 
 /* leave_out_add: one more thing left out, unless `keep` of the run puts it back. bound: largest
  * relative change of a result, 0: exact. Texts are copied. */

@@ -148,8 +148,8 @@ static bool once_more(struct program_run *r, struct run_result *out)
 }
 
 /* Attempts until the program asks for no more; only the last leaves anything in the arenas. */
-static bool attempts(struct program_run *r, struct run_cache *c, struct arena *a,
-                     struct run_result *out, struct err *e)
+bool run_attempts(struct program_run *r, struct run_cache *c, struct arena *a,
+                  struct run_result *out, struct err *e)
 {
     /* A program asks again when its residual is too large: the next attempt has more refinement. */
     const struct arena_mark work = arena_mark(c->scratch), results = arena_mark(a);
@@ -254,7 +254,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
     const bool ok = ranks_fit(spec, order, e) && run_open(spec, order, cache, cache->own, &r, e) &&
-                    attempts(&r, cache, a, out, e);
+                    run_attempts(&r, cache, a, out, e);
     if (ok && chief(&r)) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;

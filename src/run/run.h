@@ -41,6 +41,12 @@ const struct program_type *run_program(const struct run_spec *spec);
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache,
               struct arena *a, struct program_run *r, struct err *e);
 
+/* run_attempts: the ranks of an opened program on virtual processors, again while the program asks
+ * for it; answers stay in *r, results in `a`, memory of the ranks in `cache`. Returns false as
+ * run_one. */
+bool run_attempts(struct program_run *r, struct run_cache *cache, struct arena *a,
+                  struct run_result *out, struct err *e);
+
 /* run_close: give back what an opened program took beside its arenas; also after run_open
  * failed. */
 void run_close(struct program_run *r);

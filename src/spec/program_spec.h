@@ -26,7 +26,8 @@ enum program_cost {
     PROGRAM_COST_DECLARED, /* as the program declares: blocks, unless it says otherwise */
     PROGRAM_COST_BLOCKS,   /* executed blocks of machine code, as the compiler counted them */
     PROGRAM_COST_AUTHOR,   /* what the program states that it costs */
-    PROGRAM_COST_HOST      /* the time that this computer took: another one in every run */
+    PROGRAM_COST_HOST,     /* the time that this computer took: another one in every run */
+    PROGRAM_COST_REAL      /* it takes its time, which nobody counts: no setting, for real runs */
 };
 
 /* What becomes of the lines that ranks write. */

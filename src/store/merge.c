@@ -17,7 +17,8 @@
 /* Studies whose rows stand for themselves. Verdicts on claims and explanations are left out: they
  * judge all runs of a database together, so after a merge they are to be made anew. */
 static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability",
-                                          "omission", "load_series", "load_point"};
+                                          "omission",    "load_series", "load_point",
+                                          "real_run",    "real_stage",  "real_sample"};
 
 /* --- the other database ----------------------------------------------------------------------- */
 

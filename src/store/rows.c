@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "measure/load_row.h"
+#include "measure/real_row.h"
 #include "measure/run_row.h"
 #include "measure/study_row.h"
 #include "store/rank_times.h"
@@ -53,6 +54,9 @@ static const struct {
     {"omission", &saving_columns},
     {"load_series", &load_series_columns},
     {"load_point", &load_point_columns},
+    {"real_run", &real_result_columns},
+    {"real_stage", &real_stage_columns},
+    {"real_sample", &real_sample_columns},
 };
 enum { STUDY_TABLES = sizeof study_table / sizeof *study_table };
 

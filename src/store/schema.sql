@@ -207,6 +207,35 @@ CREATE TABLE omission (
     PRIMARY KEY (scenario, what)
 ) STRICT, WITHOUT ROWID;
 
+-- Runs of programs on real computers, not simulated. Each measurement is a row of its own.
+CREATE TABLE real_run (
+    real_id     TEXT PRIMARY KEY,      -- of the row: made of what was run, where and when
+    task_hash   TEXT NOT NULL,         -- SHA-256 of all settings but those of the machine
+    scenario    TEXT NOT NULL,         -- stem of the scenario file, or the command that was recorded
+    program     TEXT NOT NULL,         -- what ran
+    n           INTEGER NOT NULL,      -- bodies; 0: it has no scene
+    settings    TEXT NOT NULL,         -- all settings of the task, or the arguments of the command
+@real_run@
+    build_id    INTEGER NOT NULL REFERENCES build (id),  -- the program that made it
+    created_utc TEXT NOT NULL          -- when, UTC
+) STRICT, WITHOUT ROWID;
+
+-- Where the time of a real run went, by stage of the program; the last one is waiting for the last rank.
+CREATE TABLE real_stage (
+    real_id     TEXT NOT NULL REFERENCES real_run (real_id) ON DELETE CASCADE,  -- the real run
+    stage       INTEGER NOT NULL,      -- number of the stage, from 0
+@real_stage@
+    PRIMARY KEY (real_id, stage)
+) STRICT, WITHOUT ROWID;
+
+-- Every repetition of a real run, in the order made.
+CREATE TABLE real_sample (
+    real_id     TEXT NOT NULL REFERENCES real_run (real_id) ON DELETE CASCADE,  -- the real run
+    sample      INTEGER NOT NULL,      -- number of the repetition, from 0
+@real_sample@
+    PRIMARY KEY (real_id, sample)
+) STRICT, WITHOUT ROWID;
+
 -- Where the time of each rank went, stage by stage (table rank_times). A rank that did nothing in a stage has no row.
 --   run_id: the run
 --   rank: number of the rank, from 0

@@ -1,0 +1,119 @@
+/* real_columns.c - the columns of real_row.h, and statistics of repetitions. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/check.h"
+#include "measure/real_row.h"
+
+/* --- statistics ------------------------------------------------------------------------------- */
+
+/* For qsort; there are no NaNs among measured times. */
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Between the two neighbours of place (n - 1) share, as most programs of statistics do it (type 7
+ * of Hyndman and Fan 1996). */
+static double quantile(const double *sorted, int n, double share)
+{
+    const double place = share * (n - 1);
+    const int below = (int)place;
+    if (below + 1 >= n) return sorted[n - 1];
+    return sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]);
+}
+
+/* The sorted values stay the caller's. */
+struct real_times real_times_of(double *value, int n)
+{
+    CHECK(n >= 1);
+    qsort(value, (size_t)n, sizeof *value, by_value);
+    return (struct real_times){value[0], quantile(value, n, 0.25), quantile(value, n, 0.5),
+                               quantile(value, n, 0.75), value[n - 1]};
+}
+
+/* --- columns ---------------------------------------------------------------------------------- */
+
+/* Where a member of a real run lies. */
+#define REAL(member) .offset = offsetof(struct real_result, member)
+
+/* In the order of enum run_status. */
+static const char *const status_word[] = {"ok", "invalid", "deadlock", "failed"};
+
+/* Where nothing was timed there are no times. */
+static bool has_samples(const void *row) { return ((const struct real_result *)row)->nsample > 0; }
+
+/* A row of table real_run, behind what was run. */
+static const struct column real_column[] = {
+    /* Where, and with what. */
+    {"backend", COLUMN_CHARS, REAL(backend),
+     .doc = "mpi: this program's own ranks; record: an MPI program of its own"},
+    {"mpi", COLUMN_CHARS, REAL(library), .doc = "which MPI"},
+    {"host", COLUMN_CHARS, REAL(host), .doc = "name of the (first) computer"},
+    {"processor", COLUMN_CHARS, REAL(processor), .doc = "what its processor is called"},
+    {"placement", COLUMN_CHARS, REAL(placement), .doc = "which processors the ranks were on"},
+    {"P", COLUMN_INT, REAL(nrank), .doc = "ranks"},
+    {"processors", COLUMN_INT, REAL(processors), .doc = "that the job could use on that computer"},
+    {"oversubscribed", COLUMN_BOOL, REAL(oversubscribed),
+     .doc = "1: more ranks on a computer than processors"},
+    /* How it ended, and how long it took. */
+    {"status", COLUMN_WORD, REAL(status), WORDS(status_word), .doc = "how it ended"},
+    {"text", COLUMN_CHARS, REAL(text), .doc = "why it is not ok"},
+    {"samples", COLUMN_INT, REAL(nsample), .doc = "repetitions"},
+    {"disturbed", COLUMN_INT, REAL(disturbed),
+     .doc = "of them, those in which the host took a processor away: not in the statistics"},
+    {"min_s", COLUMN_REAL, REAL(time.min), .flags = COLUMN_NULL, .known = has_samples,
+     .doc = "wall time from the first rank's begin to the last rank's end, least"},
+    {"lower_s", COLUMN_REAL, REAL(time.lower), .flags = COLUMN_NULL, .known = has_samples,
+     .doc = "lower quartile"},
+    {"median_s", COLUMN_REAL, REAL(time.median), .flags = COLUMN_NULL, .known = has_samples,
+     .doc = "median"},
+    {"upper_s", COLUMN_REAL, REAL(time.upper), .flags = COLUMN_NULL, .known = has_samples,
+     .doc = "upper quartile"},
+    {"max_s", COLUMN_REAL, REAL(time.max), .flags = COLUMN_NULL, .known = has_samples,
+     .doc = "largest"},
+    /* What else the computer did. */
+    {"load_others", COLUMN_REAL, REAL(load.others), .flags = COLUMN_NULL,
+     .doc = "processors that other programs kept busy meanwhile"},
+    {"load_before", COLUMN_REAL, REAL(load.before), .flags = COLUMN_NULL,
+     .doc = "load average of the system, 1 minute, before"},
+    {"load_after", COLUMN_REAL, REAL(load.after), .flags = COLUMN_NULL, .doc = "the same after"},
+    /* What the answer is worth. */
+    {"same_bits", COLUMN_BOOL, REAL(same_bits),
+     .doc = "1: the answer is that of the simulated run, bit by bit"},
+    {"repeatable", COLUMN_BOOL, REAL(repeatable), .doc = "1: all repetitions gave the same bits"},
+    {"difference", COLUMN_REAL, REAL(difference), .flags = COLUMN_NULL,
+     .doc = "of the answer from the simulated one, relative"},
+    {"answer", COLUMN_HEX, REAL(answer), .doc = "fingerprint of the answer"},
+    {"checks", COLUMN_INT, REAL(checks), .doc = "comparisons of the answer with references"},
+    {"worst_error", COLUMN_REAL, REAL(worst_error), .flags = COLUMN_NULL,
+     .doc = "of the comparison nearest to its tolerance"},
+    {"worst_tolerance", COLUMN_REAL, REAL(worst_tolerance), .flags = COLUMN_NULL,
+     .doc = "its tolerance"},
+    /* What was sent, as the simulator counts it. */
+    {"messages", COLUMN_INT64, REAL(messages), .doc = "sent by all ranks in one repetition"},
+    {"sent_bytes", COLUMN_INT64, REAL(bytes), .doc = "in them"},
+};
+const struct column_table real_result_columns = COLUMNS(real_column);
+
+/* A stage of the program, over its ranks and repetitions. */
+#define STAGE(member) .offset = offsetof(struct real_stage, member)
+static const struct column stage_column[] = {
+    {"name", COLUMN_CHARS, STAGE(name), .doc = "of the stage; end: ranks wait for the last one"},
+    {"min_s", COLUMN_REAL, STAGE(min_s), .doc = "mean over the ranks, least of the repetitions"},
+    {"median_s", COLUMN_REAL, STAGE(median_s),
+     .doc = "mean over the ranks, median of the repetitions"},
+    {"largest_s", COLUMN_REAL, STAGE(largest_s),
+     .doc = "largest of the ranks, median of the repetitions"},
+};
+const struct column_table real_stage_columns = COLUMNS(stage_column);
+
+/* One repetition as it was, disturbed or not. */
+#define SAMPLE(member) .offset = offsetof(struct real_sample, member)
+static const struct column sample_column[] = {
+    {"seconds", COLUMN_REAL, SAMPLE(seconds), .doc = "wall time of the repetition"},
+    {"disturbed", COLUMN_BOOL, SAMPLE(disturbed),
+     .doc = "1: the host took a processor away meanwhile"},
+};
+const struct column_table real_sample_columns = COLUMNS(sample_column);
