@@ -19,6 +19,11 @@
     X("run", "backend", "WAY",                                                                     \
       "mpi: run for real, on the processes that mpirun started, instead of simulating")            \
     X("run", "samples", "N", "with --backend: undisturbed repetitions wanted (default 30)")        \
+    X("calibrate", "quick", NULL, "fewer samples: under 30 s, else under 5 minutes")               \
+    X("predict", "stages", NULL, "each stage on a line of its own")                                \
+    X("record", "n", "N", "processes (default 2)")                                                 \
+    X("record", "samples", "N", "repetitions (default 10)")                                        \
+    X("record", "mpirun", "COMMAND", "the launcher with its options")                              \
     X("run", "threads", "N|auto", "host threads for each run (default auto)")                      \
     X("run", "uncertainty", "N",                                                                   \
       "draw the machine's uncertain parameters N times: bands and shares")                         \

@@ -9,6 +9,9 @@
     X(cmd_plan, "plan", "list the runs of a scenario, for engines that hand out work")             \
     X(cmd_merge, "merge", "join the databases of several hosts or shards")                         \
     X(cmd_mpirun, "mpirun", "run a program on virtual processors, as mpirun does")                 \
+    X(cmd_calibrate, "calibrate", "measure this computer and write a machine file of it")          \
+    X(cmd_predict, "predict", "compare measured runs with what a machine file predicts")           \
+    X(cmd_record, "record", "measure an MPI program of its own on this computer")                  \
     X(cmd_paper, "paper", "reproduce the paper: runs, figures, claims, report")                    \
     X(cmd_claims, "claims", "judge the claims of the paper by a database")                         \
     X(cmd_plot, "plot", "draw a figure from a database")                                           \

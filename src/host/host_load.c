@@ -5,6 +5,7 @@
 #include <sched.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/text.h"
@@ -93,4 +94,13 @@ void host_name(char *buffer, int size)
 {
     if (gethostname(buffer, (size_t)size) != 0) buffer[0] = '\0';
     buffer[size - 1] = '\0';
+}
+
+/* In UTC, as all dates of this project. */
+void host_date(char buffer[16])
+{
+    struct tm utc;
+    const time_t now = time(NULL);
+    gmtime_r(&now, &utc);
+    strftime(buffer, 16, "%Y-%m-%d", &utc);
 }

@@ -24,4 +24,7 @@ int host_processors(uint64_t set);
 void host_processor_name(char *buffer, int size);
 void host_name(char *buffer, int size);
 
+/* host_date: today in UTC, "2026-11-22". */
+void host_date(char buffer[16]);
+
 #endif

@@ -57,6 +57,7 @@ struct real_result {
     int checks;        /* comparisons with references */
     double worst_error, worst_tolerance; /* of them, the one nearest to its tolerance; NaN: none */
     int64_t messages, bytes;             /* sent, all ranks */
+    struct work work; /* counted by the simulated run, all ranks; not stored */
     int nstage;
     struct real_stage stage[RUN_MAX_STAGES + 1];
 };

@@ -25,10 +25,10 @@ struct reader {
 static bool is_evidence(const char *s)
 {
     /* PR before P, which it begins with. */
-    static const char *const classes[] = {"PR", "P", "D", "E"};
+    static const char *const classes[] = {"measured", "PR", "P", "D", "E"};
     for (;;) {
         size_t i = 0, n = 0;
-        for (; i < 4 && n == 0; i++)
+        for (; i < 5 && n == 0; i++)
             if (strncmp(s, classes[i], strlen(classes[i])) == 0) n = strlen(classes[i]);
         if (n == 0) return false;
         s += n;
@@ -64,7 +64,7 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
     if (!is_evidence(v->evidence) && v->evidence[0] != '\0')
         return err_set_at(e, ERR_DATA, v->file, v->line,
                           "%s: class '%.20s'; expected P (published), PR (published, recalled), D "
-                          "(derived) or E (estimated)",
+                          "(derived), E (estimated) or measured (on this or another computer)",
                           key, v->evidence);
     return true;
 }

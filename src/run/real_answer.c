@@ -44,10 +44,12 @@ static bool simulate(struct real *r, struct kernel_spec *settled, struct err *e)
     struct run_spec spec = r->own;
     spec.machine.network.level = LEVEL_LOGGP;
     spec.program.cost = r->spec->program.cost;
-    bool ok = run_open(&spec, NULL, cache, own, &run, e) &&
-              run_attempts(&run, cache, own, result, e);
+    bool ok =
+        run_open(&spec, NULL, cache, own, &run, e) && run_attempts(&run, cache, own, result, e);
     if (ok && result->status == RUN_OK) {
         keep_answers(r, &run);
+        for (int64_t k = 0; k < (int64_t)result->nrank * result->nstage; k++)
+            work_add(&r->out->work, &result->stage[k].work);
         *settled = run.spec.kernel;
     } else if (ok) {
         r->out->status = result->status;

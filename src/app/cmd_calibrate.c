@@ -1,0 +1,149 @@
+/* cmd_calibrate.c - mimdsim calibrate: a machine file of this computer.
+ *
+ * This verb joins the job, divides the work among its processes and writes the file; what is
+ * measured and how is in room reality. It is a job also with one process, since the same MPI that
+ * carries the messages has to be there for real runs.
+ *
+ * The exit status of a computer that is too busy is that of a locked database: try again. */
+#include <math.h>
+#include <string.h>
+
+#include "app/campaign_mpi.h"
+#include "app/flag.h"
+#include "app/verb.h"
+#include "base/beside.h"
+#include "base/progress.h"
+#include "host/host_load.h"
+#include "hosts/hosts_copy.h"
+#include "reality/calibrate.h"
+
+static const char doc[] =
+    "Measure this computer and write a machine file of it.\n\n"
+    "Example: mimdsim calibrate -o my-host.yaml\n"
+    "\vRates of one processor are fitted to measured times of our own kernels, whose operations "
+    "are "
+    "counted; messages between two processes are measured by size: overheads, latency, gap, rate "
+    "and the switch from eager to rendezvous. Every number has its residual, date and host. "
+    "Samples "
+    "in which the system took a processor away are not counted; when too few are left, nothing is "
+    "written and the exit status is 75. "
+    "Messages need two processes: mpirun -n 2 mimdsim calibrate. With one there are rates alone "
+    "(docs/reality.md).\n\n"
+    "--quick: fewer samples and sizes of kernels, under 30 s; else under 5 minutes.";
+
+enum { TAG_DONE = 600, QUICK_SAMPLES = 60, FULL_SAMPLES = 400 };
+
+/* How much is measured: samples of messages, repetitions of kernels. Both are what is wanted; more
+ * are made where some are disturbed. */
+struct effort {
+    int messages, kernels; /* samples */
+    double seconds;        /* of one kernel at one size at most */
+};
+
+/* Quick: what fits into half a minute when nothing else runs, and into a minute when much does. */
+static struct effort effort_of(bool quick)
+{
+    return quick ? (struct effort){QUICK_SAMPLES, 10, 1} : (struct effort){FULL_SAMPLES, 40, 4};
+}
+
+/* The kernels on the first process alone; the others sleep until it is done: spinning, they would
+ * heat the processor and take memory bandwidth. */
+static bool measure_rates(struct job *job, const struct common *c, const struct effort *effort,
+                          struct calibration *out, struct err *e)
+{
+    struct plan p = {0};
+    struct plan_options o = common_plan(c);
+    bool ok = true;
+    if (job->h.rank == 0) {
+        ok = plan_read(&p, "calibrate", &o, e) &&
+             rates_measure(&p, effort->kernels, effort->seconds, c->quiet, &out->rates, e);
+        plan_free(&p);
+    }
+    if (!hosts_tell(&job->h, TAG_DONE, &ok, sizeof ok))
+        return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
+    return ok;
+}
+
+/* On a lane that lives for this measurement alone. Processes beyond the second take part in
+ * barriers and do nothing else. */
+static bool measure_messages(struct job *job, const struct effort *effort, struct calibration *out,
+                             struct err *e)
+{
+    if (job->h.size < 2) return true;
+    struct host_comm *comm = host_comm_create(&job->h, e);
+    if (comm == NULL) return false;
+    out->has_messages = true;
+    const bool ok = messages_measure(&job->h, comm, effort->messages, &out->messages, e);
+    host_comm_destroy(comm);
+    return ok;
+}
+
+/* Around everything that is measured: the load of others is what the system was busy with, less the
+ * processor time of this job, whose processes wait by spinning. */
+static bool measure(struct job *job, const struct common *c, bool quick, struct calibration *out,
+                    struct err *e)
+{
+    const struct effort effort = effort_of(quick);
+    const struct host_load_begin load = host_load_start();
+    const double own = host_processor_seconds();
+    if (!measure_rates(job, c, &effort, out, e) || !measure_messages(job, &effort, out, e))
+        return false;
+    int64_t used = (int64_t)((host_processor_seconds() - own) * 1e9);
+    int64_t set = (int64_t)host_processor_set(), *all = NULL;
+    (void)all;
+    if (!job->h.call->reduce(HOSTS_SUM, &used, 1))
+        return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
+    /* Bound processes have a processor each: as many as the job has, at least. */
+    out->processors = host_processors((uint64_t)set);
+    if (out->processors < job->h.size) out->processors = job->h.size;
+    out->load = host_load_read(&load, (double)used * 1e-9);
+    host_name(out->host, (int)sizeof out->host);
+    host_processor_name(out->processor, (int)sizeof out->processor);
+    text_copy(out->library, sizeof out->library, job->h.call->library);
+    host_date(out->date);
+    out->clock = calibration_clock();
+    return true;
+}
+
+/* A line for each thing that was learnt, so that a bad fit or a busy computer is seen at once and
+ * not only in the file. */
+static void say(const struct calibration *c, const char *path)
+{
+    const struct rates *r = &c->rates;
+    printf("%s: %.4g Mflop/s, kernels within %.1f %% (median), %.1f %% (largest)\n", path,
+           r->flop > 0 ? 1e-6 / r->flop : 0, 100 * r->median_residual, 100 * r->residual);
+    if (c->has_messages)
+        printf("messages: %.3f us for 0 B, %.3f us for 8 KiB; barrier of MPI %.3f us\n",
+               c->messages.point[0].one_way * 1e6, c->messages.point[8].one_way * 1e6,
+               c->messages.barrier * 1e6);
+    else printf("messages: not measured; start two processes: mpirun -n 2 mimdsim calibrate\n");
+    printf("load: other programs kept %.2f processors busy\n", c->load.others);
+}
+
+/* Nothing is written before all of it is measured: a file is whole, or the one of before stays. */
+int cmd_calibrate(int argc, char **argv)
+{
+    struct common c;
+    struct job job = {.kept = -1};
+    struct err e;
+    struct text text = {0};
+    err_clear(&e);
+    const bool quick = take_flag(&argc, argv, "--quick");
+    bool ok = job_open(&job, "mpi", &e);
+    common_parse(&c, argc, argv, TAKES_STORE, "", doc, 0, 0);
+    job_heard(&job, &c);
+    struct arena *a = arena_create();
+    struct calibration *out = TAKE(a, 1, struct calibration);
+    const char *path = c.database_given ? c.database : "my-host.yaml";
+    job.started = true;
+    ok = ok && measure(&job, &c, quick, out, &e);
+    if (ok && job.h.rank == 0) {
+        calibration_text(out, &text);
+        ok = beside_write(path, text.s, text.length, &e);
+        if (ok) say(out, path);
+    }
+    text_free(&text);
+    arena_destroy(a);
+    if (job.h.rank > 0) err_clear(&e);
+    return job_end(&job, ok ? 0 : e.kind == ERR_NONE ? 0 : common_fail(&c, &e));
+}

@@ -1,0 +1,294 @@
+/* cmd_predict.c - mimdsim predict: measured runs beside what a machine file predicts of them.
+ *
+ * The two meet in the task (spec/task.h): what the ranks do, whatever the machine. The plan says
+ * which tasks are asked for and on which machine they are simulated; the database says what they
+ * took on a computer. A prediction is made anew each time, since it takes milliseconds, and a
+ * stored one would have to be of the same machine file.
+ *
+ * The error is against the median of the undisturbed repetitions: the least of many is what a
+ * computer can do at its best, the median what it does. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/arguments.h"
+#include "app/flag.h"
+#include "app/verb.h"
+#include "base/check.h"
+#include "reality/predict.h"
+#include "spec/task.h"
+
+static const char doc[] =
+    "Compare the measured runs of SCENARIO in the database with what the machine of the scenario, "
+    "or "
+    "--machine, predicts.\n\n"
+    "Example: mimdsim predict speedup-t3e --set ranks=2 --set n=16,64 -m my-host.yaml\n"
+    "\vMeasured are the rows that mimdsim run --backend mpi has stored; of each task the latest. "
+    "The "
+    "error is that of the predicted time against the median of the undisturbed repetitions. The "
+    "last "
+    "columns name the parameters of the machine that would have to change least for the prediction "
+    "to "
+    "be right, by which factor, and the stage that differs most. Runs with more ranks than "
+    "processors, "
+    "and those with fewer than 5 undisturbed repetitions, are shown and not counted "
+    "(docs/reality.md).\n\n"
+    "--stages: each stage on a line of its own.";
+
+enum { MOST_ROWS = 1000 };
+
+/* A measured run as it is stored: where and when, and what predict.h needs of it. `found` says
+ * whether there was any. */
+struct measured {
+    char id[32], host[64], utc[32];
+    struct real_result real;
+    bool found;
+};
+
+/* What all rows together say: the errors of those that count, whose median and largest end the
+ * table, and how many tasks have nothing to be compared with. */
+struct summary {
+    struct common *c;
+    struct store *store;
+    bool stages;
+    double error[MOST_ROWS]; /* (n) of those that count, by size */
+    int n, shown, missing;
+    struct json json;
+};
+
+/* --- reading ---------------------------------------------------------------------------------- */
+
+/* A number as the database gives it: a whole one where it has no fraction, nothing where it was not
+ * known when the row was stored. */
+static double real_of(const struct store_value *v)
+{
+    return v->kind == STORE_REAL ? v->real : v->kind == STORE_INT ? (double)v->integer : NAN;
+}
+
+/* The columns of the query below, in its order. Only what a comparison needs is read: the samples
+ * themselves stay in the database. */
+static bool take_run(void *context, int n, const char *const *name, const struct store_value *v)
+{
+    struct measured *m = context;
+    (void)n, (void)name;
+    m->found = true;
+    text_copy(m->id, sizeof m->id, v[0].text);
+    text_copy(m->host, sizeof m->host, v[1].text);
+    text_copy(m->utc, sizeof m->utc, v[2].text);
+    m->real.time.min = real_of(&v[3]);
+    m->real.time.median = real_of(&v[4]);
+    m->real.nsample = (int)v[5].integer;
+    m->real.disturbed = (int)v[6].integer;
+    m->real.load.others = real_of(&v[7]);
+    m->real.load.before = real_of(&v[8]);
+    m->real.oversubscribed = v[9].integer != 0;
+    return false; /* the latest alone */
+}
+
+/* Stages in the order of the program; more than there can be are of another version and are left
+ * out. */
+static bool take_stage(void *context, int n, const char *const *name, const struct store_value *v)
+{
+    struct measured *m = context;
+    (void)n, (void)name;
+    if (m->real.nstage > RUN_MAX_STAGES) return false;
+    struct real_stage *s = &m->real.stage[m->real.nstage++];
+    text_copy(s->name, sizeof s->name, v[0].text);
+    s->median_s = real_of(&v[1]);
+    return true;
+}
+
+/* The latest measurement of a task that went well, from whichever computer it is: the table does
+ * not mix several, and older ones stay where they are for other questions. */
+static bool find(struct store *s, const char *task, struct measured *out, struct err *e)
+{
+    const char *const by_task[] = {task};
+    memset(out, 0, sizeof *out);
+    if (!store_query(
+            s,
+            "SELECT real_id, host, created_utc, min_s, median_s, samples, disturbed, "
+            "load_others, load_before, oversubscribed FROM real_run WHERE task_hash = ?1 "
+            "AND status = 'ok' AND median_s > 0 ORDER BY created_utc DESC, real_id LIMIT 1",
+            1, by_task, NULL, take_run, out, e))
+        return false;
+    if (!out->found) return true;
+    const char *const by_id[] = {out->id};
+    return store_query(s, "SELECT name, median_s FROM real_stage WHERE real_id = ?1 ORDER BY stage",
+                       1, by_id, NULL, take_stage, out, e);
+}
+
+/* --- printing --------------------------------------------------------------------------------- */
+
+/* Why a row does not count; "": it does. More ranks than processors take turns, which no machine
+ * model here describes; too few undisturbed repetitions are no measurement. */
+static const char *left_out(const struct measured *m)
+{
+    if (m->real.oversubscribed) return "more ranks than processors";
+    if (m->real.nsample - m->real.disturbed < REAL_LEAST_SAMPLES) return "disturbed";
+    return "";
+}
+
+/* Measured, then predicted; a stage that only one of the two has shows nan for the other one. */
+static void print_stages(const struct prediction *p)
+{
+    for (int i = 0; i < p->nstage; i++) {
+        const struct predicted_stage *s = &p->stage[i];
+        printf("    %-24s %12.3f %12.3f us\n", s->name, s->measured * 1e6, s->predicted * 1e6);
+    }
+}
+
+/* The title comes with the first row, so that an empty answer is only its message. The load is that
+ * of the measurement: a difference that is due to other programs is not the model's. */
+static void print_row(struct summary *s, const struct run_spec *spec, const struct measured *m,
+                      const struct prediction *p)
+{
+    char why[48] = "-", load[24] = "-";
+    if (s->shown == 0)
+        printf("%-18s %6s %4s %12s %12s %8s %6s  %-34s %s\n", "program", "n", "P", "measured_us",
+               "predicted_us", "error_%", "load", "explained by", "stage");
+    if (p->explains < PRICES)
+        snprintf(why, sizeof why, "%s x %.2f", price_name(p->explains), p->factor);
+    if (isfinite(m->real.load.others)) snprintf(load, sizeof load, "%.2f", m->real.load.others);
+    else if (isfinite(m->real.load.before))
+        snprintf(load, sizeof load, "(%.1f)", m->real.load.before);
+    printf("%-18s %6d %4d %12.3f %12.3f %8.1f %6s  %-34s %s%s%s\n", spec->kernel.name,
+           spec->model.nbody, spec->nrank, p->measured * 1e6, p->predicted * 1e6, 100 * p->error,
+           load, why, p->worst >= 0 ? p->stage[p->worst].name : "-",
+           left_out(m)[0] != '\0' ? "; not counted: " : "", left_out(m));
+    if (s->stages) print_stages(p);
+}
+
+/* The same for programs, with all stages and in SI units; keys are in alphabetical order, as
+ * everywhere. */
+static void print_json(struct summary *s, const struct run_spec *spec, const struct measured *m,
+                       const struct prediction *p)
+{
+    struct json *j = &s->json;
+    json_object(j);
+    json_key_int(j, "P", spec->nrank);
+    json_key_bool(j, "counted", left_out(m)[0] == '\0');
+    json_key_real(j, "error", p->error);
+    json_key_text(j, "explained_by", p->explains < PRICES ? price_name(p->explains) : "");
+    json_key_real(j, "factor", p->factor);
+    json_key_text(j, "host", m->host);
+    json_key_real(j, "load_before", m->real.load.before);
+    json_key_real(j, "load_others", m->real.load.others);
+    json_key_real(j, "measured_s", p->measured);
+    json_key_int(j, "n", spec->model.nbody);
+    json_key_real(j, "predicted_s", p->predicted);
+    json_key_text(j, "program", spec->kernel.name);
+    json_key(j, "stages");
+    json_array(j);
+    for (int i = 0; i < p->nstage; i++) {
+        json_object(j);
+        json_key_real(j, "measured_s", p->stage[i].measured);
+        json_key_text(j, "name", p->stage[i].name);
+        json_key_real(j, "predicted_s", p->stage[i].predicted);
+        json_end(j);
+    }
+    json_end(j);
+    json_key_text(j, "utc", m->utc);
+    json_end(j);
+}
+
+/* For qsort: the errors are numbers. */
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* The median is that of the sorted errors, the upper one of two. Tasks without a measurement are
+ * told once, since a scenario may sweep more than was measured. */
+static void print_summary(struct summary *s)
+{
+    if (s->missing > 0 && !s->c->quiet)
+        fprintf(stderr, "mimdsim: %d of the tasks have no measured run in %s\n", s->missing,
+                s->c->database);
+    if (s->c->json || s->n == 0) return;
+    qsort(s->error, (size_t)s->n, sizeof *s->error, by_value);
+    printf("error of %d: median %.1f %%, largest %.1f %%\n", s->n, 100 * s->error[s->n / 2],
+           100 * s->error[s->n - 1]);
+}
+
+/* --- the command ------------------------------------------------------------------------------ */
+
+/* Runs that differ only in machine or level are one task, simulated on the first one's machine: a
+ * plan with several machines is to be asked about one at a time. */
+static bool is_first(const struct plan *p, const struct run_spec *task, int i)
+{
+    (void)p;
+    for (int k = 0; k < i; k++)
+        if (strcmp(task[k].config_hash, task[i].config_hash) == 0) return false;
+    return true;
+}
+
+/* A task that nobody measured costs nothing; one that was is simulated a dozen times (predict.c).
+ */
+static bool predict_one(struct summary *s, const struct run_spec *run, const struct run_spec *task,
+                        struct run_cache *cache, struct err *e)
+{
+    struct measured m;
+    struct prediction p;
+    if (!find(s->store, task->config_hash, &m, e)) return false;
+    if (!m.found) {
+        s->missing++;
+        return true;
+    }
+    if (!predict_run(run, &m.real, cache, &p, e)) return false;
+    if (s->c->json) print_json(s, run, &m, &p);
+    else print_row(s, run, &m, &p);
+    s->shown++;
+    if (left_out(&m)[0] == '\0' && s->n < MOST_ROWS) s->error[s->n++] = fabs(p.error);
+    return true;
+}
+
+/* Scenes and serial answers are shared among all simulations of the table. */
+static bool predict_all(struct summary *s, const struct plan *p, struct err *e)
+{
+    struct run_spec *task = TAKE(p->arena, p->nrun, struct run_spec);
+    struct run_cache *cache = run_cache_create();
+    bool ok = true;
+    s->json = json_make(stdout);
+    if (s->c->json) json_array(&s->json);
+    for (int i = 0; ok && i < p->nrun; i++) {
+        task[i] = task_of(&p->run[i], p->arena);
+        if (p->run[i].refused == NULL && is_first(p, task, i))
+            ok = predict_one(s, &p->run[i], &task[i], cache, e);
+    }
+    run_cache_destroy(cache);
+    if (ok && s->c->json) {
+        json_end(&s->json);
+        json_finish(&s->json);
+    }
+    if (ok && s->shown == 0)
+        ok =
+            err_set(e, ERR_NO_INPUT,
+                    "%s has no measured run of this scenario; make some by mpirun -n 2 mimdsim run "
+                    "%s --backend mpi",
+                    s->c->database, p->name);
+    if (ok) print_summary(s);
+    return ok;
+}
+
+/* Nothing is stored: the same question can be asked of another machine file at once. */
+int cmd_predict(int argc, char **argv)
+{
+    struct common c;
+    struct summary *s = calloc(1, sizeof *s);
+    struct plan p = {0};
+    struct err e;
+    err_clear(&e);
+    CHECK(s != NULL);
+    s->c = &c;
+    s->stages = take_flag(&argc, argv, "--stages");
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE, "SCENARIO|PROGRAM", doc, 1, 1);
+    struct plan_options o = common_plan(&c);
+    bool ok = plan_read(&p, c.arg[0], &o, &e);
+    s->store = ok ? store_open(c.database, STORE_READ, &e) : NULL;
+    ok = ok && s->store != NULL && predict_all(s, &p, &e);
+    store_close(s->store);
+    plan_free(&p);
+    free(s);
+    return ok ? 0 : common_fail(&c, &e);
+}

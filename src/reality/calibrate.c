@@ -1,0 +1,153 @@
+/* calibrate.c - see calibrate.h.
+ *
+ * The machine is one crossbar whose nodes are the processors: in shared memory no link is between
+ * them that messages could meet on, or none that these measurements could tell. Everything that a
+ * message costs is message software, by segments of its size. */
+#include "reality/calibrate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "reality/segments.h"
+
+double calibration_clock(void)
+{
+    char line[256];
+    double mhz = 0;
+    FILE *f = fopen("/proc/cpuinfo", "r");
+    while (f != NULL && mhz == 0 && fgets(line, sizeof line, f) != NULL)
+        if (sscanf(line, "cpu MHz : %lf", &mhz) != 1) mhz = 0;
+    if (f != NULL) fclose(f);
+    return mhz > 0 ? round(mhz) * 1e6 : 1e9;
+}
+
+/* "class: measured, source: ..." behind a value; what is said of all is said once, at the top. */
+static void leaf(struct text *t, const char *indent, const char *key, const char *value,
+                 const char *source, const struct calibration *c)
+{
+    text_add(t, "%s%s: {value: %s, class: measured, source: \"%s; %s, %s\"}\n", indent, key, value,
+             source, c->host, c->date);
+}
+
+/* A price as cycles of the stated clock. */
+static void cycles(struct text *t, const char *key, double price, const char *source,
+                   const struct calibration *c)
+{
+    char value[48];
+    snprintf(value, sizeof value, "%.4g cycles", price * c->clock);
+    leaf(t, "  ", key, value, source, c);
+}
+
+/* Rates: a price of 0 is a class of operations that the fit gave nothing. */
+static void add_node(const struct calibration *c, struct text *t)
+{
+    const struct rates *r = &c->rates;
+    char value[48], source[160];
+    snprintf(source, sizeof source,
+             "fit to %d runs of kernels on one processor, residual %.1f %% median, %.1f %% largest",
+             r->n, 100 * r->median_residual, 100 * r->residual);
+    text_add(t, "node:\n");
+    /* At least 1 flop/s is asked for; a flop that costs nothing gets the largest rate there is. */
+    snprintf(value, sizeof value, "%.4g Mflop/s", r->flop > 0 ? 1e-6 / r->flop : 1e9);
+    leaf(t, "  ", "flop_rate", value, "products of a 6x6 matrix and a vector, least time", c);
+    snprintf(value, sizeof value, "%.0f MHz", c->clock * 1e-6);
+    leaf(t, "  ", "clock", value, "as the system states it: the unit of the cycles below", c);
+    cycles(t, "div", r->div, source, c);
+    cycles(t, "sqrt", r->sqrt, "a loop of roots, each of the one before, least time", c);
+    cycles(t, "trig", r->trig, "a loop over 512 angles, least time", c);
+    cycles(t, "instruction", r->instruction,
+           "a scalar product, five instructions an element, least time", c);
+    snprintf(value, sizeof value, "%.4g ns", r->call * 1e9);
+    leaf(t, "  ", "call", value, source, c);
+    text_add(t, "  copy:\n");
+    snprintf(value, sizeof value, "%.4g MB/s", 1e-6 / r->copy);
+    leaf(t, "    ", "bandwidth", value, "copies of 16 KiB within the first cache, least time", c);
+}
+
+/* One segment on a line, with how well its lines fit. */
+static void add_segment(const struct fitted_segment *f, struct text *t)
+{
+    const struct software_segment *s = &f->segment;
+    text_add(t, "    - {from: %lld B, send.overhead: %.5g ns, send.copy: %.5g ns/B, ",
+             (long long)s->from, s->send_overhead * 1e9, s->send_copy * 1e9);
+    text_add(t, "recv.overhead: %.5g ns, recv.copy: %.5g ns/B,\n", s->recv_overhead * 1e9,
+             s->recv_copy * 1e9);
+    text_add(t, "       latency: %.5g ns, gap: %.5g ns, gap_per_byte: %.5g ns/B, ",
+             s->latency * 1e9, s->gap * 1e9, s->gap_per_byte * 1e9);
+    if (s->protocol == PROTOCOL_RENDEZVOUS)
+        text_add(t, "protocol: rendezvous, rendezvous.latency: %.5g ns,\n       ",
+                 s->rendezvous_latency * 1e9);
+    text_add(t,
+             "class: measured, source: \"%d sizes, residual of a message %.1f %%, o_s %.1f %%, o_r "
+             "%.1f %%\"}\n",
+             f->points, 100 * f->one_way, 100 * f->send, 100 * f->recv);
+}
+
+static void add_software(const struct calibration *c, struct text *t)
+{
+    struct fitted_segment segment[SOFTWARE_MAX_SEGMENTS];
+    const struct messages *m = &c->messages;
+    char value[48];
+    const int n = segments_of(m, segment);
+    text_add(t, "\nsoftware:\n  segments:\n");
+    for (int i = 0; i < n; i++) add_segment(&segment[i], t);
+    snprintf(value, sizeof value, "%.4g ns", m->barrier * 1e9);
+    text_add(t,
+             "\n# Programs make barriers of messages here, as mimdsim does on this MPI. MPI's own "
+             "barrier: %s.\n",
+             value);
+    if (m->eager_most == INT64_MAX)
+        text_add(t, "# No size that was tried waits for its receive.\n");
+    else text_add(t, "# Messages up to %lld B are sent at once.\n", (long long)m->eager_most);
+}
+
+/* What was measured, one line each, for people who want to judge the fits. */
+static void add_points(const struct calibration *c, struct text *t)
+{
+    text_add(t, "\n# Measured, median of the undisturbed samples [us]: bytes, one way, send, late "
+                "receive, in a train; samples - disturbed\n");
+    for (int i = 0; i < c->messages.n; i++) {
+        const struct message_point *p = &c->messages.point[i];
+        text_add(t, "#   %8lld %10.3f %10.3f %10.3f %10.3f  %d - %d\n", (long long)p->bytes,
+                 p->one_way * 1e6, p->send * 1e6, p->recv * 1e6, p->train * 1e6, p->samples,
+                 p->disturbed);
+    }
+}
+
+static void add_kernels(const struct calibration *c, struct text *t)
+{
+    text_add(t, "\n# Kernels on one processor: measured [us], flops; samples - disturbed\n");
+    for (int i = 0; i < c->rates.n; i++) {
+        const struct rate_sample *s = &c->rates.sample[i];
+        text_add(t, "#   %-28s %12.3f %12llu  %d - %d\n", s->what, s->seconds * 1e6,
+                 (unsigned long long)s->work.flop, s->samples, s->disturbed);
+    }
+    text_add(t, "# Fixed cost of a run: %.3f us, which no prediction adds.\n",
+             c->rates.fixed * 1e6);
+}
+
+void calibration_text(const struct calibration *c, struct text *t)
+{
+    text_add(t, "# Measured by mimdsim calibrate on %s, %s: %s, %d processors, %s.\n", c->host,
+             c->date, c->processor[0] != '\0' ? c->processor : "unknown processor", c->processors,
+             c->library);
+    text_add(t,
+             "# Load meanwhile: other programs kept %.2f processors busy; load average %.2f "
+             "before, %.2f after.\n",
+             c->load.others, c->load.before, c->load.after);
+    text_add(t, "schema_version: 1\ntitle: \"%s, measured %s\"\n\ntopology:\n", c->host, c->date);
+    leaf(t, "  ", "family", "crossbar", "processors of one computer", c);
+    leaf(t, "  ", "dims", "[1]", "the same", c);
+    char value[32];
+    snprintf(value, sizeof value, "%d", c->processors);
+    leaf(t, "  ", "nodes_per_router", value, "processors that the job may use, a node each", c);
+    text_add(t, "\n");
+    add_node(c, t);
+    text_add(t, "\nnetwork:\n  level: loggp\n  link:\n");
+    leaf(t, "    ", "bandwidth", "unlimited", "the rate is in the segments", c);
+    if (c->has_messages) add_software(c, t);
+    if (c->has_messages) add_points(c, t);
+    add_kernels(c, t);
+}

@@ -1,0 +1,29 @@
+/* calibrate.h - a machine file of this computer, out of measured rates and messages. */
+#ifndef REALITY_CALIBRATE_H
+#define REALITY_CALIBRATE_H
+
+#include "base/text.h"
+#include "measure/real_row.h"
+#include "reality/messages.h"
+#include "reality/rates.h"
+
+/* Everything that was measured. */
+struct calibration {
+    struct rates rates;
+    bool has_messages; /* there were two processes */
+    struct messages messages;
+    struct host_load load;
+    char host[64], processor[64], library[24], date[16];
+    int processors; /* of this computer that the job may use */
+    double clock;   /* [Hz]: for cycle counts, as the system states it; 1e9 where it does not */
+};
+
+/* calibration_text: the machine file, every number with its residual, class "measured", date and
+ * host; appended. */
+void calibration_text(const struct calibration *c, struct text *out);
+
+/* calibration_clock: the clock of the first processor as the system states it [Hz], 1e9 where it
+ * does not. Only the unit of cycle counts: their times are measured. */
+double calibration_clock(void);
+
+#endif

@@ -1,0 +1,157 @@
+#!/usr/bin/env bats
+# reality.bats - this computer as a machine file, predictions beside measurements, programs of their own mpicc. Times are
+# only looked at for being sane: the computer may be busy, and then calibration refuses, which is right, too.
+
+load helper
+load mpi_job
+
+# calibrated FAMILY PROCESSES: quick calibration into my.yaml; skip where this computer is too busy for it.
+calibrated() {
+    run --separate-stderr -- start "$1" "$2" "$MIMDSIM" calibrate --quick -o my.yaml -q
+    [ "$status" -ne 75 ] || { [[ $stderr == *'were undisturbed, fewer than'* ]] && [ ! -e my.yaml ] && skip "busy"; }
+    [ "$status" -eq 0 ] || { show; return 1; }
+}
+
+@test "calibrate writes a machine file that is valid, with class, residual, date and host of every number" {
+    needs mpich
+    calibrated mpich 2
+    works mimdsim check my.yaml
+    grep -q "# Load meanwhile: other programs kept" my.yaml
+    # Every value is measured, here and today.
+    [ "$(grep -c 'value:' my.yaml)" -eq "$(grep 'value:' my.yaml | grep -c "class: measured.*$(uname -n), 20..-..-..")" ]
+    for key in flop_rate div sqrt trig bandwidth; do grep -q "$key: {value" my.yaml; done
+    grep -q 'residual .* median, .* largest' my.yaml
+    # Messages between two processes of a computer take between 20 ns and 5 ms, and large ones longer.
+    works mimdsim run pingpong -m my.yaml --set ranks=2 --set kernel.message='[0 B, 64 KiB, 1 MiB]' -o p.db -q
+    sql_is p.db "SELECT count(*), min(measured_s) > 2e-8, max(measured_s) < 5e-3, max(measured_s) > 5 * min(measured_s)
+        FROM run WHERE status = 'ok'" '3|1|1|1'
+    works mimdsim machines my.yaml
+    stdout_says measured
+}
+
+@test "calibrate on one process measures rates alone, with Open MPI" {
+    needs openmpi
+    calibrated openmpi 1
+    works mimdsim check my.yaml
+    ! grep -q segments my.yaml
+    works start openmpi 1 "$MIMDSIM" run speedup-t3e --set ranks=1 --set n=32 --set kernel=dynamics --backend mpi \
+        --samples 5 --limit 2 -q
+    works mimdsim predict speedup-t3e -m my.yaml --set ranks=1 --set n=32 --set kernel=dynamics --json
+    json_is_valid
+    json_is '$[0].program' dynamics
+    # A sane ratio: within a factor of five, on a computer that may be busy with anything.
+    ratio=$(sqlite3 :memory: "SELECT json_extract('$output', '\$[0].predicted_s')
+        / json_extract('$output', '\$[0].measured_s') BETWEEN 0.2 AND 5")
+    [ "$ratio" = 1 ] || { show; return 1; }
+}
+
+# A measured row whose times are what the simulator predicts on the Paragon.
+planted() {
+    scenario=(speedup-t3e --set ranks=2 --set n=16 --set kernel=dynamics --set level=loggp -o r.db)
+    works start mpich 2 "$MIMDSIM" run "${scenario[@]}" --backend mpi --samples 1 --limit 0.1 -q
+    works mimdsim run "${scenario[@]}" -m paragon -q
+    sqlite3 r.db "UPDATE real_run SET median_s = (SELECT makespan_ps * 1e-12 FROM run WHERE machine = 'paragon'),
+        samples = 10, disturbed = 1, oversubscribed = 0, load_others = 0.25"
+}
+
+@test "predict compares by time and stage, and names the parameter that explains the difference" {
+    needs mpich
+    planted
+    works mimdsim predict "${scenario[@]}" -m paragon
+    stdout_says '0.0   0.25'
+    stdout_says 'error of 1: median 0.0 %, largest 0.0 %'
+    # On a Paragon whose flops take less time the prediction is too small, and that price is told.
+    works mimdsim predict "${scenario[@]}" -m paragon --set machine.node.flop_rate='8 Mflop/s' --json
+    json_is '$[0].counted' 1
+    json_is '$[0].explained_by' node.flop_rate
+    works mimdsim predict "${scenario[@]}" -m paragon --stages
+    [ "$(grep -c ' us$' <<<"$output")" -eq 8 ]
+    # What was measured on too few processors or with too many disturbances is shown and does not count.
+    sqlite3 r.db 'UPDATE real_run SET oversubscribed = 1'
+    works mimdsim predict "${scenario[@]}" -m paragon
+    stdout_says 'not counted: more ranks than processors'
+    [[ $output != *'error of'* ]]
+    sqlite3 r.db 'UPDATE real_run SET oversubscribed = 0, disturbed = 8'
+    works mimdsim predict "${scenario[@]}" -m paragon
+    stdout_says 'not counted: disturbed'
+}
+
+@test "predict without measured runs says how to make them" {
+    works mimdsim run pingpong -q --set ranks=2 --set kernel.message='8 B'
+    fails_with 66 mimdsim predict speedup-t3e --set ranks=2 --set n=16
+    stderr_says 'mimdsim.db has no measured run of this scenario; make some by mpirun -n 2 mimdsim run'
+    fails_with 66 mimdsim predict speedup-t3e -o none.db
+    fails_with 64 mimdsim predict
+}
+
+own_mpi_program() {
+    needs "$1"
+    command -v "mpicc.$1" >/dev/null || skip "no mpicc.$1"
+    cat >ring.c <<'C'
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+int main(int argc, char **argv)
+{
+    int rank, size, token = 0;
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    if (rank == 0) usleep(argc > 1 ? (useconds_t)atoi(argv[1]) : 0);
+    MPI_Sendrecv(&rank, 1, MPI_INT, (rank + 1) % size, 0, &token, 1, MPI_INT, (rank + size - 1) % size, 0,
+                 MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    printf("%d\n", token);
+    MPI_Finalize();
+    return argc > 2;
+}
+C
+    "mpicc.$1" -o ring ring.c
+    works mimdsim record -n 2 --samples 3 -q -- ./ring 20000
+    stdout_says 'ring: P = 2'
+    # Sleeping on rank 0 is waited for by all; starting mpirun is no part of the time.
+    sql_is mimdsim.db "SELECT backend, program, settings, P, samples, status, min_s >= 0.02, min_s < 2, length(task_hash)
+        FROM real_run" 'record|ring|./ring 20000|2|3|ok|1|1|64'
+    sql_is mimdsim.db 'SELECT count(*) FROM real_sample' 3
+    fails_with 1 mimdsim record -n 2 --samples 1 -q -- ./ring 1 2
+    stderr_says "'./ring' on 2 processes ended with status"
+    [ -z "$(find . -name 'mimdsim-record-*')" ]
+}
+
+programs_of_their_own() {
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+    ASAN_OPTIONS=detect_leaks=0 own_mpi_program "$1"
+}
+
+@test "record times a program of Open MPI's mpicc" { programs_of_their_own openmpi; }
+@test "record times a program of MPICH's mpicc" { programs_of_their_own mpich; }
+
+@test "record refuses what it cannot time" {
+    fails_with 64 mimdsim record -n 2
+    stderr_says 'expected -- PROGRAM'
+    fails_with 66 mimdsim record -- ./none
+    stderr_says "there is no program './none' that can be run"
+    fails_with 65 mimdsim record -- /bin/sh
+    stderr_says 'is not linked with the shared library of MPICH or Open MPI'
+    for n in 0 x 1025; do
+        fails_with 64 mimdsim record -n $n -- /bin/sh
+        stderr_says "-n '$n': expected a number from 1 to 1024"
+    done
+    nothing_left_behind
+}
+
+@test "a build without MPI says so, and the rest works" {
+    cp "$MIMDSIM" lonely
+    export MIMDSIM_DATA
+    PMI_RANK=0 fails_with 69 ./lonely calibrate -o my.yaml
+    stderr_says 'built without MPICH'
+    fails_with 69 ./lonely calibrate
+    [ ! -e my.yaml ]
+    if command -v mpicc.mpich >/dev/null; then
+        echo 'int MPI_Init(int *, char ***); int main(void) { return MPI_Init(0, 0); }' >one.c
+        mpicc.mpich -o one one.c
+        fails_with 69 ./lonely record -n 1 -- ./one
+        stderr_says 'built without MPICH'
+    fi
+    works ./lonely machines t3e-300
+}
