@@ -211,7 +211,7 @@ static const struct {
 
 bool netcheck_is_series(const struct node *c)
 {
-    return document_find(c, "vc_allocator") != NULL;
+    return document_find(c, "topology_params") != NULL;
 }
 
 /* The table of a form; a step without arrivals but with makespans by variant is a band. */

@@ -37,8 +37,8 @@ struct netcheck_reader {
     struct netcheck_alike alike[8];
 };
 
-/* netcheck_is_series: whether a case of a load names the routing rule and its allocator, and is
- * played by that rule (netcheck_series.c). */
+/* netcheck_is_series: whether a case of a load gives its network by parameters, names the rule, and
+ * is played by that rule (netcheck_series.c). */
 bool netcheck_is_series(const struct node *c);
 
 /* netcheck_form_of: the form of case c and whether it has reference answers; its keys looked at.
