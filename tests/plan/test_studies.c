@@ -253,7 +253,8 @@ static const struct {
     {"sweep:\n  sample:\n    points: 4\n    seed: -1\n" OF, 7, "seed: '-1'"},
     {"sweep:\n  sample:\n    points: 4\n    of: [n]\n", 7, "expected 1 to 40 keys"},
     {"sweep:\n  sample:\n    points: 4\n    of: {}\n", 7, "expected 1 to 40 keys"},
-    {"sweep:\n  sample:\n    points: 4\n    of: {nn: {from: 1, to: 2}}\n", 7, "nn"},
+    {"sweep:\n  sample:\n    points: 4\n    of: {modl.n: {from: 1, to: 2}}\n", 7,
+     "did you mean 'model.n'"},
     {"sweep:\n  sample:\n    points: 4\n    of: {n: []}\n", 7, "at least one value"},
     {"sweep:\n  sample:\n    points: 4\n    of: {n: 7}\n", 7, "expected a list of values, or a"},
     {"sweep:\n  sample:\n    points: 4\n    of: {n: {from: 8}}\n", 7, "or a range such as"},
@@ -280,7 +281,8 @@ static const struct {
     {"optimise:\n  zzz: makespan\n" OVER, 5, "expected least, greatest, within, over, runs"},
     {"optimise:\n  least: makespan\n  runs: 3\n" OVER, 6, "runs: '3'"},
     {"optimise:\n  least: makespan\n  over: [n]\n", 6, "expected keys with lists or ranges"},
-    {"optimise:\n  least: makespan\n  over: {bandwith: {from: 1, to: 2}}\n", 6, "bandwith"},
+    {"optimise:\n  least: makespan\n  over: {modl.n: {from: 1, to: 2}}\n", 6,
+     "did you mean 'model.n'"},
     {"sweep: {n: [8, 16]}\noptimise:\n  least: makespan\n  over: {n: {from: 8, to: 16}}\n", 4,
      "'model.n' is swept here and searched in line 7"},
 };
@@ -305,25 +307,57 @@ static void what_is_wrong_is_told_at_its_line(void **state)
     }
 }
 
-/* More than a machine's memory is refused before any point is made. */
-static void a_sample_too_large_is_refused_by_its_product(void **state)
+/* The keys of a sample with `points` points, each drawn from one or two values. */
+static void read_keys(const char *const *key, int n, int points, struct err *e)
 {
-    (void)state;
     struct text t = {0};
     struct plan p;
     struct plan_options o = {0};
-    struct err e;
-    err_clear(&e);
-    text_add(&t, HEAD "sweep:\n  sample:\n    points: 100000\n    method: random\n    of:\n");
-    static const char *const key[] = {"injection", "ejection"};
-    for (int i = 0; i < 2; i++)
-        text_add(&t, "      machine.network.%s.bandwidth: {from: 1 MB/s, to: 1 GB/s}\n", key[i]);
-    text_add(&t, "      n: {from: 8, to: 16}\n      seed: {from: 1, to: 9}\n");
-    for (const char *const *k = (const char *const[]){"hop_latency", "latency", NULL}; *k; k++)
-        text_add(&t, "      machine.network.%s: {from: 1 us, to: 2 us}\n", *k);
-    if (plan_read(&p, scratch_write(&scratch, "large.yaml", t.s), &o, &e)) plan_free(&p);
-    else assert_true(e.kind == ERR_DATA && e.text[0] != '\0');
+    err_clear(e);
+    text_add(&t, HEAD "sweep:\n  sample:\n    points: %d\n    method: random\n    of:\n", points);
+    for (int i = 0; i < n; i++) text_add(&t, "      %s\n", key[i]);
+    if (plan_read(&p, scratch_write(&scratch, "large.yaml", t.s), &o, e)) plan_free(&p);
     text_free(&t);
+}
+
+/* A few lines must not ask for any amount of memory. */
+static void a_sample_too_large_is_refused_by_its_product(void **state)
+{
+    (void)state;
+    static const char *const key[] = {"n: [8, 16]",
+                                      "ranks: [4]",
+                                      "seed: [1]",
+                                      "machine.network.hop_latency: [1 us]",
+                                      "machine.network.end_latency: [1 us]",
+                                      "machine.network.credit_latency: [0 us]",
+                                      "machine.network.routing_latency: [0 us]",
+                                      "machine.network.vc_allocation_latency: [0 us]",
+                                      "machine.network.link.bandwidth: [1 GB/s]",
+                                      "machine.network.injection.bandwidth: [1 GB/s]",
+                                      "machine.network.ejection.bandwidth: [1 GB/s]"};
+    struct err e;
+    read_keys(key, 11, 100000, &e);
+    assert_int_equal(e.kind, ERR_DATA);
+    assert_non_null(strstr(e.text, "100000 points of 11 keys are more than 1000000 values"));
+    read_keys(key, 11, 2, &e);
+    assert_int_equal(e.kind, ERR_NONE);
+}
+
+static void a_sample_has_at_most_forty_keys(void **state)
+{
+    (void)state;
+    char name[41][32];
+    const char *key[41];
+    struct err e;
+    for (int i = 0; i < 41; i++) {
+        snprintf(name[i], sizeof name[i], "unknown%d: [1]", i);
+        key[i] = name[i];
+    }
+    read_keys(key, 41, 2, &e);
+    assert_non_null(strstr(e.text, "expected 1 to 40 keys"));
+    read_keys(key, 40, 2, &e);
+    assert_non_null(strstr(e.text, "unknown0"));
+    assert_null(strstr(e.text, "expected 1 to 40 keys"));
 }
 
 /* ---- conditions ---- */
@@ -434,6 +468,7 @@ int main(void)
         cmocka_unit_test(a_point_of_a_range_is_the_text_of_a_setting),
         cmocka_unit_test(what_is_wrong_is_told_at_its_line),
         cmocka_unit_test(a_sample_too_large_is_refused_by_its_product),
+        cmocka_unit_test(a_sample_has_at_most_forty_keys),
         cmocka_unit_test(conditions_see_what_will_run),
         cmocka_unit_test(a_condition_that_is_none_is_refused),
         cmocka_unit_test(when_leaves_points_out),
