@@ -59,7 +59,7 @@ static int twisted_offset(const struct twisted *g, int from, int to, int best[MA
     int diff[MACHINE_MAX_DIMS], crossed[MACHINE_MAX_DIMS] = {0}, least = -1;
     for (int d = 0; d < g->ndim; d++)
         diff[d] = to / g->stride[d] % g->radix[d] - from / g->stride[d] % g->radix[d];
-    for (int d = 0; d >= 0;) {
+    for (;;) {
         /* An upper edge crossed leads k_d places on, and twist further in dimension 0, which the
          * offset of dimension 0 has to make good; there the shorter way round. */
         int offset[MACHINE_MAX_DIMS], links = 0, x = diff[0], k = g->radix[0];
@@ -76,7 +76,8 @@ static int twisted_offset(const struct twisted *g, int from, int to, int best[MA
             for (int i = 0; i < g->ndim; i++) best[i] = offset[i];
         }
         /* The next combination of crossings: 0, 1, -1 in each dimension but the first. */
-        for (d = 1; d < g->ndim && crossed[d] < 0; d++) crossed[d] = 0;
+        int d = 1;
+        while (d < g->ndim && crossed[d] < 0) crossed[d++] = 0;
         if (d == g->ndim) break;
         crossed[d] = crossed[d] == 0 ? 1 : -1;
     }

@@ -38,7 +38,7 @@ static bool is_fixed(const char *name)
 static void plain_name(const char *key, char *name)
 {
     size_t k = 0;
-    for (; key[k] != '\0' && k < NAME - 1; k++)
+    for (; k < NAME - 1 && key[k] != '\0'; k++)
         name[k] = isalnum((unsigned char)key[k]) ? key[k] : '_';
     name[k] = '\0';
 }
