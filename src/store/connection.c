@@ -64,6 +64,7 @@ bool store_failed(struct store *s, struct err *e)
                        system ? strerror(system) : text);
     case SQLITE_NOTADB: return err_set(e, ERR_DATA, "%s is not a database of mimdsim", path);
     case SQLITE_CORRUPT: return err_set(e, ERR_DATA, "database %s is damaged: %s", path, text);
+    case SQLITE_OK: /* a call that keeps no code, such as deserialising: only memory fails there */
     case SQLITE_NOMEM: return err_set(e, ERR_INTERNAL, "no memory for database %s", path);
     default: return err_set(e, ERR_DATA, "database %s: %s", path, text);
     }

@@ -302,6 +302,13 @@ bool store_begin(struct store *s, struct err *e)
 bool store_commit(struct store *s, struct err *e)
 {
     CHECK(s->in_transaction);
+    /* SQLite undoes a transaction by itself when memory is refused, also to a statement whose
+     * failure does not matter: what stood in it is lost all the same. */
+    if (sqlite3_get_autocommit(s->db)) {
+        store_rollback(s);
+        return err_set(e, ERR_INTERNAL, "no memory for database %s: its last rows were not stored",
+                       s->path);
+    }
     sqlite3_stmt *commit = store_statement(s, STATEMENT_COMMIT, e);
     /* A commit can fail (disk full): then nothing of the transaction is kept. */
     if (commit == NULL || !store_step(s, commit, e)) {
