@@ -371,8 +371,12 @@ void page_figures(struct page *p, struct store *s, const char *name, const char 
     struct err ignored;
     int drawn = 0;
     err_clear(&ignored);
-    /* Without rows there is no drawing: told like a missing one. */
+    /* Without rows there is no drawing: told like a missing one. A description that cannot be read,
+     * which the error names as its file, is told at the end. */
     const int n = report_drawings_find(s, p->data_dir, name, &d, &ignored) ? d.n : 0;
+    const bool unread =
+        ignored.file[0] != '\0' || ignored.kind == ERR_IO || ignored.kind == ERR_INTERNAL;
+    if (n == 0 && unread && p->trouble.kind == ERR_NONE) p->trouble = ignored;
     fputs("<figure>\n", p->html);
     for (int i = 0; i < n; i++) drawn += put_picture(p, d.as[i]);
     if (drawn == 0) fputs("</figure>\n", p->html);
