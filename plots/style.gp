@@ -12,7 +12,7 @@ set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
-# A line that is longer than a page of `wide` pixels goes on two, divided behind a semicolon or a comma of its second half;
+# A line that is longer than a page of wide pixels goes on two, divided behind a semicolon or a comma of its second half;
 # foot_high is where they stand above the lower edge.
 room(wide) = int(wide/5.4)
 behind(s, mark) = strstrt(s[int(strlen(s)/2):*], mark)

@@ -1,5 +1,4 @@
-/* mpi_functions.h - the functions of MPI, as the standard declares them. Made by
- * src/mpi/generate.awk. */
+/* mpi_functions.h - the functions of MPI, as the standard declares them. Made by src/mpi/generate.awk. */
 int MPI_Init(int *argc, char ***argv);
 int PMPI_Init(int *argc, char ***argv);
 int MPI_Init_thread(int *argc, char ***argv, int required, int *provided);

@@ -158,7 +158,7 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     const enum err_kind kind = mode == STORE_READ ? ERR_NO_INPUT : ERR_CREATE;
     *exists = stat(path, &info) == 0;
     if (*exists && S_ISDIR(info.st_mode))
-        return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA,
+        return err_set(e, mode == STORE_READ ? ERR_DATA : ERR_CREATE,
                        "%s is a folder, not a database", path);
     if (!*exists && errno != ENOENT && errno != ENOTDIR)
         return err_set(e, kind, "cannot open database %s: %s", path, strerror(errno));

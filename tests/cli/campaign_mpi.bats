@@ -79,7 +79,7 @@ survives_kills() {
 
 @test "a process that goes while the launcher lets the others live costs nothing" {
     needs openmpi
-    many 60
+    many 200
     works mimdsim run own.yaml -o whole.db --quiet
     start openmpi 3 --enable-recovery "$MIMDSIM" run own.yaml --campaign mpi -o "$PWD/all.db" --quiet >/dev/null 2>told 3>&- &
     job=$!
@@ -91,7 +91,11 @@ survives_kills() {
         [ -z "$last" ] || break
         sleep 0.05
     done
-    sleep 0.3
+    # the campaign has begun, and most of it is left
+    for try in $(seq 200); do
+        [ "$(sqlite3 "file:all.db?mode=ro" 'SELECT count(*) FROM run' 2>/dev/null || echo 0)" -lt 3 ] || break
+        sleep 0.02
+    done
     kill -9 "$last"
     wait $job || true
     grep 'process 2 of the job .*; other processes make its runs' told

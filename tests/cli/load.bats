@@ -26,7 +26,7 @@ END
 @test "a curve is printed, stored and drawn" {
     small "4, 4"
     works mimdsim load small.yaml --rates 0.05,0.2:0.4:0.1,0.95 --traffic uniform -q
-    stdout_says "small, routing minimal, level packet, traffic uniform"
+    stdout_says "small, routing deterministic, level packet, traffic uniform"
     stdout_says "16 nodes, messages of 4 flits, cycle 1 ns, empty network 15.5 ns, bound of the routes 1.0000"
     stdout_says "saturation at 0."
     sql_is mimdsim.db "SELECT group_concat(offered, ' ') FROM load_point WHERE NOT probe" "0.05 0.2 0.3 0.4 0.95"
@@ -94,8 +94,8 @@ END
     json_is '$[7].series.traffic' "shift(1)"
     json_is '$[7].points[0].status' ok
     sed 's/mesh/fat-tree/; s/\[4, 4\]/[4, 2]/' small.yaml >fat.yaml
-    works mimdsim load fat.yaml --rates 0.1 --no-saturation -q --routing minimal,valiant
-    stdout_says "routing valiant"
+    works mimdsim load fat.yaml --rates 0.1 --no-saturation -q --routing deterministic,nca
+    stdout_says "routing nca"
 }
 
 @test "a figure has a curve for each level, and a section" {
@@ -174,7 +174,7 @@ END
 65#needs a dragonfly#small.yaml --traffic badrandom
 64#did you mean 'packet'?#small.yaml --level paket
 64#there is no level 'x'; known: loggp#small.yaml --level x
-65#minimal#small.yaml --routing upwards
+65#deterministic#small.yaml --routing upwards
 64#--size: '0 B'; expected 1 B to 1 GiB#small.yaml --size '0 B'
 64#--size: '64'#small.yaml --size 64
 64#--within: 'x'; expected an error such as 2%#small.yaml --within x

@@ -110,8 +110,8 @@ planted documented 'does not open with' 'sed -i 1d src/vp/vp.c'
 
 long_function() { printf 'int long_one(int n)\n{\n'; printf '    n++;\n%.0s' $(seq "$1"); printf '    return n;\n}\n'; }
 planted lengths 'src/vp/vp.c:8: function of 61 lines' 'long_function 57 >>src/vp/vp.c'
-planted lengths 'more than 500' 'printf "/* more */\n%.0s" $(seq 500) >>src/vp/vp.c'
-planted lengths 'more than 150' 'printf "/* more */\n%.0s" $(seq 150) >>src/vp/vp.h'
+planted lengths 'more than 540' 'printf "/* more */\n%.0s" $(seq 540) >>src/vp/vp.c'
+planted lengths 'more than 170' 'printf "/* more */\n%.0s" $(seq 170) >>src/vp/vp.h'
 planted lengths '121 columns' 'printf "/* %0115d */\n" 1 >>src/vp/vp.c'
 planted lengths 'a tab' 'printf "\t/* tab */\n" >>src/vp/vp.c'
 planted lengths 'functions in src are within 15 lines' 'for f in src/*/*.c; do long_function 12 >>$f; done; for f in src/[a-m]*/*.c; do long_function 13 >>$f; done'
