@@ -123,7 +123,7 @@ digests() { sql "$1" 'SELECT level, n, digest FROM run ORDER BY level, n'; }
     fails_with 73 mimdsim run small.yaml --quiet -o nowhere/one.db --set n=2 --set level=loggp
     stderr_says 'cannot make database nowhere/one.db'
     [ ! -e nowhere ]
-    fails_with 65 mimdsim run small.yaml --quiet -o closed --set n=2 --set level=loggp
+    fails_with 73 mimdsim run small.yaml --quiet -o closed --set n=2 --set level=loggp
     stderr_says 'closed is a folder'
     [ -z "$(ls closed)" ]
 }
