@@ -236,7 +236,7 @@ static bool other_value(const struct field *f, const char *full, const void *bas
     case FIELD_PAIR_LIST:
         return text_add(out, "[[0, 1]]"), true;
     case FIELD_REALS:
-        units_print(3, f->unit, quantity, (int)sizeof quantity);
+        units_print(fmin(3, f->max / 2), f->unit, quantity, (int)sizeof quantity);
         for (int i = 0; i < f->capacity; i++) text_add(out, "%s%s", i > 0 ? ", " : "", quantity);
         return true;
     }
