@@ -248,10 +248,11 @@ int backend_run(int argc, char **argv, const char *backend)
     err_clear(&e);
     bool ok = strcmp(backend, "mpi") == 0 ||
               err_set(&e, ERR_USAGE, "--backend '%.40s': expected mpi", backend);
-    ok = ok && job_open(&job, "mpi", &e);
+    ok = ok && job_open_started(&job, &e);
     ok = take_samples(&argc, argv, &b.order, &e) && ok;
     ok = take_seconds(&argc, argv, "--limit", &b.order.seconds, &e) && ok;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE, "SCENARIO|PROGRAM", doc, 1, 1);
+    ok = ok && job_open_alone(&job, &e);
     job_heard(&job, &c);
     struct plan_options o = common_plan(&c);
     ok = ok && plan_read(&p, c.arg[0], &o, &e);

@@ -42,6 +42,16 @@ bool job_open(struct job *j, const char *campaign, struct err *e)
     return true;
 }
 
+bool job_open_started(struct job *j, struct err *e)
+{
+    return job_open(j, hosts_started() ? "mpi" : NULL, e);
+}
+
+bool job_open_alone(struct job *j, struct err *e)
+{
+    return j->on || job_open(j, "mpi", e);
+}
+
 /* From here on each process may tell its own errors; progress remains the first one's. */
 void job_heard(struct job *j, struct common *c)
 {

@@ -20,6 +20,12 @@ struct job {
  * the first are silent until job_heard. Returns false with ERR_USAGE, or as hosts_open. */
 bool job_open(struct job *j, const char *campaign, struct err *e);
 
+/* job_open_started, job_open_alone: the same in two steps, for verbs that are a job also without a
+ * launcher. Before the command line is read, a process that a launcher started joins; afterwards,
+ * one that is alone: --help and a wrong option need no MPI. */
+bool job_open_started(struct job *j, struct err *e);
+bool job_open_alone(struct job *j, struct err *e);
+
 /* job_heard: the command line is read. Only the first process makes remarks from now on. */
 void job_heard(struct job *j, struct common *c);
 

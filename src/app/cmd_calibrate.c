@@ -129,8 +129,9 @@ int cmd_calibrate(int argc, char **argv)
     struct text text = {0};
     err_clear(&e);
     const bool quick = take_flag(&argc, argv, "--quick");
-    bool ok = job_open(&job, "mpi", &e);
+    bool ok = job_open_started(&job, &e);
     common_parse(&c, argc, argv, TAKES_STORE, "", doc, 0, 0);
+    ok = ok && job_open_alone(&job, &e);
     job_heard(&job, &c);
     struct arena *a = arena_create();
     struct calibration *out = TAKE(a, 1, struct calibration);

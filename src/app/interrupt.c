@@ -6,6 +6,7 @@
  * run. */
 #include "app/interrupt.h"
 
+#include <errno.h>
 #include <stdio.h>
 
 /* What interrupt_end sends to the thread alone. */
@@ -28,6 +29,7 @@ static void *wait_for_signal(void *context)
     sigset_t set;
     int number = 0;
     fill(&set, true);
+    sem_post(&x->waits);
     /* A signal of the user that waits, too, has a lower number and is the first one. */
     if (sigwait(&set, &number) != 0 || number == ENOUGH) return NULL;
     const int stored = atomic_load(&x->stored);
@@ -52,7 +54,12 @@ void interrupt_begin(struct interrupt *x, const char *database, int todo)
     if (todo == 0) return;
     fill(&set, true);
     if (pthread_sigmask(SIG_BLOCK, &set, &x->before) != 0) return;
+    sem_init(&x->waits, 0, 0);
     x->on = pthread_create(&x->thread, NULL, wait_for_signal, x) == 0;
+    /* A thread takes memory when it begins. Were a worker forked meanwhile, the lock of an
+     * allocator that does not mind forks, as the address sanitizer's, would be held in it for ever.
+     */
+    while (x->on && sem_wait(&x->waits) != 0 && errno == EINTR) continue;
     /* The thread has begun with all three blocked; here the last one acts as before. */
     set = x->before;
     if (x->on) sigaddset(&set, SIGINT), sigaddset(&set, SIGTERM);
@@ -64,6 +71,7 @@ void interrupt_end(struct interrupt *x)
     if (!x->on) return;
     pthread_kill(x->thread, ENOUGH);
     pthread_join(x->thread, NULL);
+    sem_destroy(&x->waits);
     pthread_sigmask(SIG_SETMASK, &x->before, NULL);
     x->on = false;
 }

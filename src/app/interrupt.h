@@ -3,6 +3,7 @@
 #define APP_INTERRUPT_H
 
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -15,6 +16,7 @@ struct interrupt {
     atomic_int stored; /* those of them that are stored */
     bool on;
     pthread_t thread;
+    sem_t waits;     /* posted by the thread, which takes no memory from then on */
     sigset_t before; /* signals that were blocked */
 };
 
