@@ -52,6 +52,20 @@ static bool kind_fits(const struct machine_spec *m, struct err *e)
     return true;
 }
 
+/* Nodes of a router that does not work are not there. */
+static bool node_works(const struct topology *t, int node)
+{
+    return topology_router_works(t, topology_router_of(t, node));
+}
+
+static int64_t working_processors(const struct machine_spec *m, const struct topology *t)
+{
+    int64_t nodes = 0;
+    if (topology_whole(t)) return (int64_t)t->nnode * m->topology.processors_per_node;
+    for (int i = 0; i < t->nnode; i++) nodes += node_works(t, i);
+    return nodes * m->topology.processors_per_node;
+}
+
 static void put(struct placement *p, int rank, int64_t processor, int per_node)
 {
     p->node[rank] = (int)(processor / per_node);
@@ -64,22 +78,27 @@ static void place_in_order(struct placement *p, const struct machine_spec *m,
                            const struct topology *t)
 {
     int per_node = m->topology.processors_per_node, npr = t->nodes_per_router;
-    for (int r = 0; r < p->nrank; r++) {
+    /* `place` counts all processors in the order, r those that work. */
+    for (int r = 0, place = 0; r < p->nrank; place++) {
         bool block = m->placement.spread == SPREAD_BLOCK;
-        int i = block ? r / per_node : r % t->nnode,
-            processor = block ? r % per_node : r / t->nnode;
+        int i = block ? place / per_node : place % t->nnode,
+            processor = block ? place % per_node : place / t->nnode;
         int node = npr == 1 ? ordered_router(m, i) : ordered_router(m, i / npr) * npr + i % npr;
-        put(p, r, (int64_t)node * per_node + processor, per_node);
+        if (node_works(t, node)) put(p, r++, (int64_t)node * per_node + processor, per_node);
     }
 }
 
-static void place_randomly(struct placement *p, const struct machine_spec *m, int64_t nprocessor,
-                           struct arena *a)
+/* Drawn from the processors that work. */
+static void place_randomly(struct placement *p, const struct machine_spec *m,
+                           const struct topology *t, int64_t nprocessor, struct arena *a)
 {
     struct random g = random_make(m->placement.seed, 0x706c616365, 0); /* "place" */
     struct arena_mark mark = arena_mark(a);
     int64_t *all = TAKE(a, nprocessor, int64_t);
-    for (int64_t i = 0; i < nprocessor; i++) all[i] = i;
+    int64_t n = 0;
+    for (int64_t i = 0; i < nprocessor; i++)
+        if (node_works(t, (int)(i / m->topology.processors_per_node))) all[n++] = i;
+    nprocessor = n;
     for (int r = 0; r < p->nrank; r++) { /* Fisher and Yates, as far as needed */
         int64_t j = r + (int64_t)random_below(&g, (uint64_t)(nprocessor - r)), other = all[j];
         all[j] = all[r];
@@ -90,8 +109,9 @@ static void place_randomly(struct placement *p, const struct machine_spec *m, in
 }
 
 /* The list may name more processors than there are ranks; none twice. */
-static bool place_by_list(struct placement *p, const struct machine_spec *m, int64_t nprocessor,
-                          struct arena *a, struct err *e)
+static bool place_by_list(struct placement *p, const struct machine_spec *m,
+                          const struct topology *t, int64_t nprocessor, struct arena *a,
+                          struct err *e)
 {
     const struct placement_spec *s = &m->placement;
     if (s->nlist < p->nrank)
@@ -110,6 +130,12 @@ static bool place_by_list(struct placement *p, const struct machine_spec *m, int
         else if (taken[processor])
             ok = err_set(e, ERR_CONFIG, "placement list: ranks %d and %d on processor %d",
                          taken[processor] - 1, r, processor);
+        else if (!node_works(t, processor / m->topology.processors_per_node))
+            ok = err_set(e, ERR_CONFIG,
+                         "placement list: processor %d of rank %d hangs on router %d, which "
+                         "network.failed.routers names",
+                         processor, r,
+                         topology_router_of(t, processor / m->topology.processors_per_node));
         else taken[processor] = r + 1;
         if (ok) put(p, r, processor, m->topology.processors_per_node);
     }
@@ -126,13 +152,19 @@ bool placement_create(struct placement *p, const struct machine_spec *m, const s
     if (nrank > nprocessor)
         return err_set(e, ERR_CONFIG, "%d ranks do not fit on machine %s with %lld processors",
                        nrank, m->name, (long long)nprocessor);
+    int64_t working = working_processors(m, t);
+    if (nrank > working)
+        return err_set(e, ERR_CONFIG,
+                       "%d ranks do not fit on machine %s: %lld of its %lld processors work "
+                       "(network.failed)",
+                       nrank, m->name, (long long)working, (long long)nprocessor);
     if (!kind_fits(m, e)) return false;
     *p = (struct placement){nrank, TAKE(a, nrank, int), TAKE(a, nrank, int)};
     switch (m->placement.kind) {
     case PLACEMENT_LIST:
-        return place_by_list(p, m, nprocessor, a, e);
+        return place_by_list(p, m, t, nprocessor, a, e);
     case PLACEMENT_RANDOM:
-        place_randomly(p, m, nprocessor, a);
+        place_randomly(p, m, t, nprocessor, a);
         return true;
     default:
         place_in_order(p, m, t);

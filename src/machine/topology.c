@@ -4,6 +4,7 @@
 #include "machine/topology.h"
 
 #include "base/check.h"
+#include "machine/topology_failed.h"
 #include "machine/topology_internal.h"
 
 static const struct topology_type *const types[] = {
@@ -42,8 +43,21 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
         }
         t->nnode = (int)nnode;
     }
+    if (s->nfailed_link + s->nfailed_router > 0 && !topology_fail(t, a, e)) return NULL;
     return t;
 }
+
+bool topology_link_works(const struct topology *t, int link)
+{
+    return !t->type->link_works || t->type->link_works(t, link);
+}
+
+bool topology_router_works(const struct topology *t, int router)
+{
+    return !t->type->router_works || t->type->router_works(t, router);
+}
+
+bool topology_whole(const struct topology *t) { return !t->type->link_works; }
 
 /* One node a router is the common case, and a division less on every hop of every message. */
 int topology_router_of(const struct topology *t, int node)

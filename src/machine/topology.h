@@ -25,7 +25,7 @@ struct hop {
 struct route_cursor {
     int router;   /* where the head is */
     int target;   /* the destination's router */
-    int stage;    /* of the family: dimension, level, leg */
+    int stage;    /* of the family: dimension, level, leg; negative: topology_failed.c */
     int left;     /* of the family: steps left in this stage */
     int step, at; /* of the family: direction, coordinate */
     int via;      /* of the family: intermediate group or router, -1: none */
@@ -81,5 +81,12 @@ int topology_injection_port(const struct topology *t, int node);
 
 /* topology_router_of: the router of node `node`. */
 int topology_router_of(const struct topology *t, int node);
+
+/* topology_link_works, topology_router_works: whether nothing of network.failed says otherwise. A
+ * route never meets what does not work; no node of such a router may take part in one.
+ * topology_whole: everything works. */
+bool topology_link_works(const struct topology *t, int link);
+bool topology_router_works(const struct topology *t, int router);
+bool topology_whole(const struct topology *t);
 
 #endif

@@ -20,6 +20,9 @@ struct topology_type {
     /* which dim_bandwidth holds for it; NULL: none */
     int (*rate_dim)(const struct topology *t, int link);
     double (*share)(const struct topology *t, int link); /* of the link rate; NULL: 1 */
+    /* NULL: all do */
+    bool (*link_works)(const struct topology *t, int link);
+    bool (*router_works)(const struct topology *t, int router);
     /* cables between two halves of the nodes, -1: no closed form for these numbers; NULL: never */
     int64_t (*bisection)(const struct topology *t);
 };

@@ -30,10 +30,12 @@ static struct survey survey_make(const struct topology *t, struct arena *a)
     s.queue = TAKE(a, t->nrouter, int);
     s.ways = TAKE(a, t->nrouter, double);
     s.nodes = TAKE(a, t->nrouter, int);
-    for (int i = 0; i < t->nnode; i++) s.nodes[topology_router_of(t, i)]++;
+    for (int i = 0; i < t->nnode; i++)
+        s.nodes[topology_router_of(t, i)] += topology_router_works(t, topology_router_of(t, i));
     /* Counted, then dealt out. */
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &to, &port);
+        if (!topology_link_works(t, l)) continue;
         s.first[from + 1]++;
     }
     for (int r = 0; r < t->nrouter; r++) {
@@ -42,6 +44,7 @@ static struct survey survey_make(const struct topology *t, struct arena *a)
     }
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &to, &port);
+        if (!topology_link_works(t, l)) continue;
         s.to[next[from]++] = to;
     }
     return s;
@@ -78,8 +81,9 @@ static double walk_routes(const struct survey *s, int source, struct topology_me
     double sum = 0;
     int node = source * t->nodes_per_router;
     for (int i = 0; i < t->nnode; i += t->nodes_per_router) {
-        int n = topology_distance(t, node, i), pairs = s->nodes[topology_router_of(t, i)];
-        if (i == node) continue;
+        int pairs = s->nodes[topology_router_of(t, i)];
+        if (i == node || pairs == 0) continue;
+        int n = topology_distance(t, node, i);
         sum += (double)n * pairs;
         if (n > m->longest_route) m->longest_route = n;
     }
@@ -97,10 +101,11 @@ static void measure_distances(const struct survey *s, struct topology_measure *m
     for (int k = 0; k < m->nsource; k++) {
         /* Routers with nodes have the lowest numbers. */
         int source = (int)((int64_t)k * with_nodes / m->nsource), nodes = s->nodes[source];
+        if (nodes == 0) continue;
         search(s, source);
         for (int r = 0; r < with_nodes; r++) {
             pairs += (double)nodes * (s->nodes[r] - (r == source));
-            if (r == source) continue;
+            if (r == source || s->nodes[r] == 0) continue;
             links += (double)nodes * s->nodes[r] * s->distance[r];
             ways += s->ways[r];
             router_pairs++;
@@ -119,7 +124,8 @@ static void count_ports(const struct survey *s, struct topology_measure *m)
     for (int r = 0; r < s->t->nrouter; r++) {
         int n = s->first[r + 1] - s->first[r] + s->nodes[r];
         if (n > m->ports) m->ports = n;
-        if (r == 0 || n < m->least_ports) m->least_ports = n;
+        bool first = m->least_ports == 0 || n < m->least_ports;
+        if (first && topology_router_works(s->t, r)) m->least_ports = n;
     }
 }
 
@@ -143,9 +149,14 @@ static void measure_bisection(const struct topology *t, struct topology_measure 
 
 struct topology_measure topology_measure(const struct topology *t, struct arena *a)
 {
-    struct topology_measure m = {.nrouter = t->nrouter, .nnode = t->nnode};
-    m.ncable = t->nlink == 1 ? 1 : t->nlink / 2;
+    struct topology_measure m = {0};
     struct survey s = survey_make(t, a);
+    /* What does not work is not counted; a bus is one link. */
+    for (int r = 0; r < t->nrouter; r++) {
+        m.nrouter += topology_router_works(t, r);
+        m.nnode += s.nodes[r];
+    }
+    m.ncable = t->nlink == 1 ? 1 : s.first[t->nrouter] / 2;
     count_ports(&s, &m);
     /* One router: every two nodes are as near as can be. */
     if (t->nrouter > 1) measure_distances(&s, &m);

@@ -12,7 +12,7 @@ enum bisection_source {
 };
 
 struct topology_measure {
-    int nrouter, nnode;
+    int nrouter, nnode;        /* those that work; so of all that follows */
     int64_t ncable;         /* two links each, there and back; a bus is one */
     int least_ports, ports; /* of a router, links and nodes together */
     int nsource;            /* routers from which distances were measured */

@@ -6,7 +6,6 @@
  * first, and the best state on the way is kept, until a pass saves nothing. */
 #include <string.h>
 
-#include "base/check.h"
 #include "base/random.h"
 #include "machine/topology_measure.h"
 
@@ -39,6 +38,7 @@ static void neighbours(struct cut *c, struct arena *a)
     c->to = TAKE(a, t->nlink + 1, int);
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &to, &port);
+        if (!topology_link_works(t, l)) continue;
         c->first[from + 1]++;
     }
     for (int r = 0; r < c->n; r++) {
@@ -47,6 +47,7 @@ static void neighbours(struct cut *c, struct arena *a)
     }
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &to, &port);
+        if (!topology_link_works(t, l)) continue;
         c->to[next[from]++] = to;
     }
 }
@@ -147,7 +148,9 @@ static void order_near(struct cut *c, int from)
             c->order[tail++] = c->to[i];
         }
     }
-    CHECK(tail == c->n);
+    /* What does not work is joined to nothing, and comes last. */
+    for (int r = 0; r < c->n; r++)
+        if (!c->locked[r]) c->order[tail++] = r;
 }
 
 static void order_randomly(struct cut *c, struct random *r)
@@ -170,6 +173,7 @@ static struct cut cut_make(const struct topology *t, struct arena *a)
     c.moved = TAKE(a, n, int);
     c.locked = TAKE(a, n, bool);
     for (int i = 0; i < t->nnode; i++) {
+        if (!topology_router_works(t, topology_router_of(t, i))) continue;
         int weight = ++c.weight[topology_router_of(t, i)];
         if (weight > c.largest) c.largest = weight;
     }

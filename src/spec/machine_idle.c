@@ -234,7 +234,7 @@ const char *machine_idle_unless_background(const struct run_spec *r)
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
 }
 
-/* Prices, powers and the floor plan. */
+/* Prices, powers and the floor plan: asked before anything runs. */
 const char *machine_idle_in_runs(const struct run_spec *r)
 {
     (void)r;

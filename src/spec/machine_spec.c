@@ -176,6 +176,17 @@ static const struct field fields[] = {
      .min = 0, .max = 1,
      .fallback = "2 %", .idle = machine_idle_unless_tolerance,
      .doc = "level 'auto-tolerance': permitted relative error of the makespan"},
+    /* What does not work. The keys are the network's, the numbers go with the topology. */
+    {.key = "network.failed.links", .kind = FIELD_PAIR_LIST, AT(topology.failed_link),
+     COUNT(topology.nfailed_link), .min = 0, .max = 1 << 30, .fallback = "[]",
+     .idle = machine_idle_without_links,
+     .doc = "cables that do not work, as pairs of routers; of a bundle one for each time that the "
+            "pair is named"},
+    /* With a router all its links fail, and its nodes take no part. */
+    {.key = "network.failed.routers", .kind = FIELD_INT_LIST, AT(topology.failed_router),
+     COUNT(topology.nfailed_router), .min = 0, .max = 1 << 30, .fallback = "[]",
+     .idle = machine_idle_without_links,
+     .doc = "routers that do not work; no rank is placed on their nodes"},
     {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(network.link_bandwidth),
      .min = 0, .max = 1e15,

@@ -58,6 +58,9 @@ struct topology_spec {
     int (*link)[2]; /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
     int nlink_percent;              /* graph: 0, nlink or 2 nlink */
     int *link_percent; /* graph: rate of each link, or there and back of each, in % of the link's */
+    int nfailed_link, nfailed_router;
+    int (*failed_link)[2]; /* (nfailed_link) joined routers whose cable does not work, borrowed */
+    int *failed_router;    /* (nfailed_router) that do not work, borrowed */
     int nlink_weight;  /* graph: 0 or nlink */
     int *link_weight;  /* graph: what a route over each link counts, borrowed */
 };

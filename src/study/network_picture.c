@@ -140,14 +140,14 @@ static bool pairs(struct picture *p, struct store *s, struct arena *a, struct er
     bool ok = true;
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &end, &port);
-        if (from < end) first[from + 1]++;
+        if (from < end && topology_link_works(t, l)) first[from + 1]++;
     }
     for (int r = 0; r < t->nrouter; r++) first[r + 1] += first[r];
     /* Filled from behind, so that first[] stays where the lists begin. */
     int *filled = TAKE(a, t->nrouter, int);
     for (int l = 0; l < t->nlink; l++) {
         topology_link_ends(t, l, &from, &end, &port);
-        if (from < end) to[first[from] + filled[from]++] = end;
+        if (from < end && topology_link_works(t, l)) to[first[from] + filled[from]++] = end;
     }
     p->npair = 0;
     for (int r = 0; r < t->nrouter && ok; r++)
@@ -174,14 +174,15 @@ static bool tables(struct store *s, struct err *e)
                            "x REAL, y REAL, dx REAL, dy REAL, cut INTEGER, far INTEGER", e);
 }
 
-/* 0 and 1: the half of a router with nodes; 2: a switch without. */
+/* 0 and 1: the half of a router with nodes; 2: a switch without, or what does not work. */
 static bool routers(const struct picture *p, struct store *s, struct err *e)
 {
     const struct topology *t = p->v->topology;
     bool ok = true;
     for (int r = 0; r < t->nrouter && ok; r++) {
         const bool *half = p->v->measure.half;
-        int kind = r >= t->nnode / t->nodes_per_router ? 2 : half && half[r];
+        bool nodes = r < t->nnode / t->nodes_per_router && topology_router_works(t, r);
+        int kind = nodes ? half && half[r] : 2;
         const struct store_value row[] = {store_int(r), store_real(p->x[r]), store_real(p->y[r]),
                                           store_int(kind)};
         ok = store_temporary_row(s, "topology_router", 4, row, e);

@@ -65,6 +65,7 @@ static double cut_bandwidth(const struct network_view *v)
     double sum = 0;
     int from, to, port;
     for (int l = 0; l < t->nlink; l++) {
+        if (!topology_link_works(t, l)) continue;
         topology_link_ends(t, l, &from, &to, &port);
         if (half[from] && !half[to]) sum += rate * topology_link_bandwidth(t, l, rate);
     }
@@ -152,6 +153,10 @@ void network_view_print(const struct network_view *v, FILE *out)
     fprintf(out, "%-18s %s %s\n", "topology", v->family, v->dims);
     fprintf(out, "%-18s %d, nodes %d, cables between routers %lld\n", "routers", m->nrouter,
             m->nnode, (long long)m->ncable);
+    if (!topology_whole(v->topology))
+        fprintf(out, "%-18s %d of %d routers and %d of %d cables do not work\n", "",
+                v->topology->nrouter - m->nrouter, v->topology->nrouter,
+                v->topology->nlink / 2 - (int)m->ncable, v->topology->nlink / 2);
     fprintf(out, "%-18s %lld in use; of one router %d", "ports", (long long)v->nport, m->ports);
     if (m->least_ports < m->ports) fprintf(out, " at most, %d at least", m->least_ports);
     fputc('\n', out);

@@ -276,6 +276,8 @@ const char *world_alone(const struct machine_spec *m, const struct world_load *l
     if (load->timed) return "receives from anybody and tests depend on time";
     if (m->network.level != LEVEL_LOGGP || topology_has(m->topology.family, TOPOLOGY_SHARED))
         return "messages wait for each other at links (network.level loggp has none)";
+    if (m->topology.nfailed_link + m->topology.nfailed_router > 0)
+        return "ways around what failed are found as they are needed";
     if (m->topology.processors_per_node > 1) return "processors of a node share a port";
     if (m->software.kernel_server) return "one kernel server serves the whole machine";
     if (!software_all_eager(&m->software, load->largest_message))

@@ -73,3 +73,39 @@ every_what_if() { (cd "$MIMDSIM_DATA/machines" && ls what-if-*.yaml) | sed 's/\.
     sql_is mimdsim.db "SELECT count(DISTINCT machine) = $(every_what_if | wc -l), count(DISTINCT messages), min(status), max(status)
         FROM run" "1|1|ok|ok"
 }
+
+@test "a failed link costs time at every level, and the answer stays" {
+    local level
+    works mimdsim machines what-if-torus --topology --quiet --set 'machine.network.failed.links=[[0, 1]]'
+    stdout_says "0 of 512 routers and 1 of 1536 cables do not work"
+    for level in loggp link packet auto flit; do
+        works mimdsim run allreduce-algorithms --machine what-if-torus --set ranks=64 --set kernel.message='4 KiB' \
+            --set kernel.algorithm=recursive-doubling --set level=$level -o "$level.db" --quiet
+        works mimdsim run allreduce-algorithms --machine what-if-torus --set ranks=64 --set kernel.message='4 KiB' \
+            --set kernel.algorithm=recursive-doubling --set level=$level -o "$level.db" --quiet \
+            --set 'machine.network.failed.links=[[0, 1], [9, 17]]'
+        sql_is "$level.db" "SELECT count(*), min(status), max(status), count(DISTINCT messages),
+            max(makespan_ps) FILTER (WHERE id = 2) > max(makespan_ps) FILTER (WHERE id = 1) FROM run" "2|ok|ok|1|1"
+    done
+}
+
+@test "what failed is named, and a network that falls apart is refused" {
+    fails_with 78 mimdsim machines t3e-300 --topology --set 'machine.network.failed.links=[[0, 9]]'
+    stderr_says "no further cable joins routers 0 and 9; 0 is joined to 1, 7, 8, 24, 32, 96"
+    fails_with 78 mimdsim machines t3e-300 --topology --set 'machine.network.failed.routers=[128]'
+    stderr_says "there is no router 128; expected 0 to 127"
+    fails_with 78 mimdsim machines t3e-300 --topology --set 'machine.network.failed.routers=[1, 7, 8, 24, 32, 96]'
+    stderr_says "network.failed cuts the network"
+    works mimdsim machines t3e-300 --topology --quiet --set 'machine.network.failed.routers=[1, 7, 8]'
+    stdout_says "3 of 128 routers and 18 of 384 cables do not work"
+}
+
+@test "ranks are placed beside failed routers, as long as there is room" {
+    works mimdsim run allreduce-algorithms --machine t3e-300 --set ranks=120 --set kernel.message='1 KiB' \
+        --set kernel.algorithm=ring --set 'machine.network.failed.routers=[0, 5, 6]' --quiet
+    sql_is mimdsim.db "SELECT status FROM run" ok
+    run --separate-stderr -- mimdsim run allreduce-algorithms --machine t3e-300 --set ranks=126 \
+        --set kernel.message='1 KiB' --set kernel.algorithm=ring --set 'machine.network.failed.routers=[0, 5, 6]' -o b.db
+    [ "$status" -ne 0 ]
+    [[ $stderr$output == *"125 of its 128 processors work"* ]]
+}
