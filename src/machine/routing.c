@@ -29,6 +29,14 @@ struct routing *routing_create(const struct topology *t, enum routing_rule rule,
                 routing_rule_name(rule), topology_family_name(family));
         return NULL;
     }
+    /* The other rules know the family's links, and would go over those that failed. */
+    if (rule != ROUTING_DETERMINISTIC && !topology_whole(t)) {
+        err_set(e, ERR_CONFIG,
+                "network.routing '%s' does not go around what network.failed names; expected "
+                "'deterministic'",
+                routing_rule_name(rule));
+        return NULL;
+    }
     struct routing *r = TAKE(a, 1, struct routing);
     *r = (struct routing){
         .topology = t, .type = type, .rule = rule, .channels = channels, .max_hops = t->max_hops};

@@ -56,9 +56,10 @@ struct routing {
     void *state; /* of the rule */
 };
 
-/* routing_create: rule `rule` on topology t with `channels` virtual channels a link (0: as many as
- * it needs, for levels without channels), memory from `a`; t is borrowed. Returns NULL with
- * ERR_CONFIG when the rule is not for this family, or needs more channels. */
+/* routing_create: rule `rule` on topology t, of which everything works unless the rule is the
+ * deterministic one, with `channels` virtual channels a link (0: as many as it needs, for levels
+ * without channels), memory from `a`; t is borrowed. Returns NULL with ERR_CONFIG when the rule is
+ * not for this family, needs more channels, or something has failed. */
 struct routing *routing_create(const struct topology *t, enum routing_rule rule, int channels,
                                struct arena *a, struct err *e);
 

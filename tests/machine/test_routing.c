@@ -329,6 +329,26 @@ static void numbers_that_do_not_fit_are_refused(void **state)
     arena_destroy(a);
 }
 
+/* A rule that chose a link that failed would be worse than none. */
+static void only_deterministic_routes_go_around_failures(void **state)
+{
+    (void)state;
+    static int cable[1][2] = {{0, 1}};
+    struct arena *a = arena_create();
+    struct err e;
+    struct topology_spec s = small[1];
+    s.nfailed_link = 1, s.failed_link = cable;
+    const struct topology *t = make(&s, a);
+    err_clear(&e);
+    assert_null(routing_create(t, ROUTING_ADAPTIVE, CHANNELS, a, &e));
+    assert_int_equal(e.kind, ERR_CONFIG);
+    assert_non_null(strstr(e.text, "does not go around what network.failed names"));
+    err_clear(&e);
+    assert_non_null(routing_create(t, ROUTING_DETERMINISTIC, CHANNELS, a, &e));
+    assert_non_null(routing_create(make(&small[1], a), ROUTING_ADAPTIVE, CHANNELS, a, &e));
+    arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -338,6 +358,7 @@ int main(void)
         cmocka_unit_test(valiant_is_longer_and_ugal_avoids_a_queue),
         cmocka_unit_test(ugal_leaves_a_link_that_is_full),
         cmocka_unit_test(numbers_that_do_not_fit_are_refused),
+        cmocka_unit_test(only_deterministic_routes_go_around_failures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
