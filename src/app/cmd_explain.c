@@ -140,6 +140,21 @@ static void print_threads(const struct plan *p, const struct run_estimate *r)
     }
 }
 
+/* What computing costs by: each text once, with the number of runs that it is true of. */
+static void print_nodes(const struct plan *p, const struct run_estimate *r)
+{
+    for (int i = 0; i < p->nrun; i++) {
+        int same = 0;
+        bool told = r[i].node[0] == '\0';
+        for (int k = 0; !told && k < p->nrun; k++)
+            if (strcmp(r[k].node, r[i].node) == 0) same++, told = k < i;
+        if (told) continue;
+        printf("computing");
+        if (same < p->nrun) printf(" (%d of %d runs)", same, p->nrun);
+        printf(": %s\n", r[i].node);
+    }
+}
+
 /* For people: the table, what is not decided yet, units, cost, then omissions and idle settings. */
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
@@ -167,6 +182,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
         printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s,
                t.host_bytes / 1e6);
     print_threads(p, r);
+    print_nodes(p, r);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
         /* Whether the omission can change a result at all comes first. "left out (exact, in 3 of 12
@@ -236,6 +252,7 @@ static void read_level(const struct column *c, const void *row, struct column_va
 static const struct column planned_column[] = {
     {"bodies", COLUMN_INT64, ESTIMATE(nbody), .doc = "of the model"},
     {"bytes", COLUMN_REAL, ESTIMATE(bytes), .doc = "sent, estimated"},
+    {"computing", COLUMN_CHARS, ESTIMATE(node), .doc = "what computing costs by, \"\": rates"},
     {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
     {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
     {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},

@@ -67,6 +67,17 @@ static void print_levels(const struct published *p, const struct outcome *o)
     putchar('\n');
 }
 
+/* What both models of the node make of computing: the difference is that of caches and of the
+ * memory that processors share. */
+static void print_models(const struct published *p, const struct outcome *o)
+{
+    if (!o->computed) return;
+    printf("%6s by model rates %.5g (%+.1f %%), roofline %.5g (%+.1f %%)\n", "",
+           o->model[NODE_RATES] / p->scale, 100 * (o->model[NODE_RATES] - p->value) / p->value,
+           o->model[NODE_ROOFLINE] / p->scale,
+           100 * (o->model[NODE_ROOFLINE] - p->value) / p->value);
+}
+
 /* A published figure and what became of it: one row of the table. */
 struct point {
     const struct published *published;
@@ -124,6 +135,18 @@ static void write_levels(const struct column *c, const void *row, struct json *j
     validation_levels_json(point(row)->outcome->level, point(row)->published->scale, j);
 }
 
+static void write_models(const struct column *c, const void *row, struct json *j)
+{
+    const struct point *p = row;
+    (void)c;
+    json_object(j);
+    json_key_real(j, "rates", p->outcome->model[NODE_RATES] / p->published->scale);
+    json_key_real(j, "roofline", p->outcome->model[NODE_ROOFLINE] / p->published->scale);
+    json_end(j);
+}
+
+static bool is_computed(const void *row) { return point(row)->outcome->computed; }
+
 static bool is_contended(const void *row) { return point(row)->outcome->contended; }
 
 /* Of the simulated value: only where there is one. */
@@ -153,6 +176,8 @@ static const struct column point_column[] = {
     {"low", COLUMN_REAL, PUBLISHED(low), .value = read_in_unit, .flags = COLUMN_NO_SQL,
      .doc = "least published"},
     {"subject", COLUMN_STRING, PUBLISHED(machine), .key = "machine", .doc = "the machine"},
+    {"models", COLUMN_STRING, .json = write_models, .known = is_computed, .flags = COLUMN_NO_SQL,
+     .doc = "what each model of the node makes of it"},
     {"reference", COLUMN_REAL, PUBLISHED(value), .value = read_in_unit, .key = "published",
      .doc = "what is published"},
     {"quantity", COLUMN_STRING, .value = read_quantity, .doc = "what was measured"},
@@ -262,6 +287,7 @@ static void print_table(const struct common *c, const struct table *t, const str
     for (int i = 0; i < t->n && !c->json; i++) {
         print_row(t->row[i], &t->outcome[i]);
         print_levels(t->row[i], &t->outcome[i]);
+        print_models(t->row[i], &t->outcome[i]);
     }
     if (!c->json) {
         contention_print(row, nrow);

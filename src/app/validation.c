@@ -88,6 +88,22 @@ static void measure_levels(const struct published *p, const struct machine_spec 
     }
 }
 
+/* By rates and by roofline: a machine whose file states no memory has one answer. */
+static void measure_models(const struct published *p, const struct machine_spec *m,
+                           struct outcome *o)
+{
+    if (!(m->node.level[NODE_MEMORY].bandwidth > 0)) return;
+    o->computed = true;
+    for (int i = 0; i < 2; i++) {
+        struct machine_spec by = *m;
+        struct err why;
+        err_clear(&why);
+        by.node.model = (enum node_model)i;
+        if (!probe_measure(&by, p->quantity, p->at, p->ranks, &o->model[i], &why))
+            o->model[i] = NAN;
+    }
+}
+
 /* Measure and judge one row. A machine that lacks the quantity is an outcome; a machine that
  * cannot be read is an error. */
 bool validation_measure(const struct published *p, struct outcome *o, struct arena *a,
@@ -105,6 +121,9 @@ bool validation_measure(const struct published *p, struct outcome *o, struct are
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
     validation_judge(p, o);
+    /* Exchanges copy: where that takes the memory's time, they are bound by it, too. */
+    const bool copies = m.software.copy_traffic > 0 && p->quantity == PROBE_EXCHANGE;
+    if (o->measured && (copies || probe_computes(p->quantity))) measure_models(p, &m, o);
     if (o->measured && probe_contends(p->quantity, p->at, p->ranks)) measure_levels(p, &m, o);
     return true;
 }

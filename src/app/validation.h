@@ -29,6 +29,8 @@ struct outcome {
     const char *verdict;     /* pass, fail, explained, not-testable */
     bool contended;          /* several ranks share the wires: */
     double level[LEVELS]; /* then the value at each level of enum network_level, SI, NAN: none */
+    bool computed;        /* the node's model matters: */
+    double model[2];      /* then the value with each of enum node_model, SI, NAN: none */
 };
 
 /* validation_measure: the figure `p` asked of its simulated machine, and judged.

@@ -342,7 +342,10 @@ static int call_run_ranks(const struct comm *handle)
 static void call_count(struct comm *handle, const struct mimdsim_counts *n)
 {
     struct guest_rank *g = rank_of(handle);
-    const struct work w = {.flop = n->flop,
+    /* Bytes that an author states are those that move; a single one says that there are none, since
+     * 0 would mean that nobody has counted. */
+    const struct work w = {.moved = n->bytes > 0 ? n->bytes : 1,
+                           .flop = n->flop,
                            .div = n->div,
                            .sqrt = n->sqrt,
                            .trig = n->trig,

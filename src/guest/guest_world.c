@@ -8,7 +8,9 @@
 #include "base/check.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
+#include "base/size.h"
 #include "loader/price.h"
+#include "machine/node_use.h"
 #include "loader/crash.h"
 #include "vp/world.h"
 
@@ -76,7 +78,7 @@ static void compute(void *context, double flops, double bytes)
     struct guest_rank *g = context;
     const struct node_cost *c = &g->world->node;
     if (g->world->cost != PROGRAM_COST_AUTHOR) return;
-    const double ps = (flops > 0 ? flops : 0) * c->flop + (bytes > 0 ? bytes : 0) * c->byte;
+    const double ps = node_cost_stated_ps(c, flops, bytes);
     comm_elapse(g->comm, ps_rounded(ps * g->world->spec->program.factor));
 }
 
@@ -96,11 +98,22 @@ static bool price_blocks(struct guest_world *w, struct err *e)
     return loader_price_blocks(w->image, &w->node, w->spec->program.factor, e);
 }
 
+/* Where its data lie, and with whom it shares the way to them: alone it has what all ranks have. */
+static bool find_use(const struct guest_world *w, int nrank, struct node_use *use, struct err *e)
+{
+    const struct run_spec *s = w->spec;
+    const int64_t own = s->program.working_set;
+    *use = node_use_alone(size_count(own, s->nrank));
+    return w->alone || node_use_make(&s->machine, nrank, own, use, e);
+}
+
 bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank, struct err *e)
 {
     char why[256];
     const struct program_spec *p = &w->spec->program;
-    w->node = node_cost_make(node);
+    struct node_use use;
+    if (!find_use(w, nrank, &use, e)) return false;
+    w->node = node_use_cost(node, &use);
     w->image = loader_open(p->image, e);
     /* What was made so far is given back by guest_world_close. */
     if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
@@ -226,6 +239,8 @@ bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct ar
                                     .stage_name = stage,
                                     .largest_message = -1,
                                     .foreign = true,
+                                    .working_set = size_count(w->spec->program.working_set,
+                                                              w->spec->nrank),
                                     .stack_bytes = stack_bytes};
     const bool made =
         guest_world_open(w, &one.node, 1, e) && world_run(&one, &load, &nothing, 0, a, out, e);

@@ -18,6 +18,14 @@ static double instruction_ps(const struct node_spec *s)
     return cycle < product ? cycle : product;
 }
 
+/* A byte of the first level that there is: without caches that is the memory. */
+static double nearest_ps(const struct node_spec *s)
+{
+    int i = NODE_L1;
+    while (i < NODE_MEMORY && s->level[i].bytes == 0) i++;
+    return s->level[i].bandwidth > 0 ? 1e12 / s->level[i].bandwidth : 0;
+}
+
 /* Picoseconds for one operation of each class of base/work.h, as double: a sum is rounded to whole
  * picoseconds once, by node_cost_ps. A rate of 0 means: free. */
 struct node_cost node_cost_make(const struct node_spec *s)
@@ -30,5 +38,7 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .byte = s->copy_bandwidth > 0 ? 1e12 / s->copy_bandwidth : 0,
         .call = s->call_time * 1e12,
         .instruction = instruction_ps(s),
+        .moved = nearest_ps(s),
+        .roofline = s->model == NODE_ROOFLINE,
     };
 }

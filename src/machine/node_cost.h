@@ -2,6 +2,7 @@
 #ifndef MACHINE_NODE_COST_H
 #define MACHINE_NODE_COST_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/picoseconds.h"
@@ -12,10 +13,24 @@
 struct node_cost {
     double flop, div, sqrt, trig, byte, call;
     double instruction; /* one instruction of compiled code, whatever it does */
+    double moved;       /* roofline: a byte loaded or stored, where the working set lies */
+    bool roofline;      /* `byte` does not count, `moved` does */
 };
 
-/* node_cost_make: the costs of `s`. */
+/* node_cost_make: the costs of `s`; with the roofline model those of data in the first cache
+ * (node_use.h: of any others). */
 struct node_cost node_cost_make(const struct node_spec *s);
+
+/* node_cost_roof_ps: time of a piece of work [ps], not rounded, by the roofline model: the longer
+ * one of `operations` [ps] and the transfer of `bytes` that are loaded and stored.
+ *
+ * Source: S. Williams, A. Waterman, D. Patterson, "Roofline: an insightful visual performance model
+ * for multicore architectures", Communications of the ACM 52 (2009) 65-76. */
+static inline double node_cost_roof_ps(const struct node_cost *c, double operations, uint64_t bytes)
+{
+    const double transfer = (double)bytes * c->moved;
+    return operations > transfer ? operations : transfer;
+}
 
 /* node_cost_ps: time of `w`, rounded to the nearest picosecond once per call; the same on every
  * host. PS_TOO_LONG where it is longer than simulated time is. */
@@ -23,16 +38,30 @@ static inline int64_t node_cost_ps(const struct node_cost *c, const struct work 
 {
     double ps = (double)w->flop * c->flop + (double)w->div * c->div;
     ps += (double)w->sqrt * c->sqrt + (double)w->trig * c->trig;
+    if (__builtin_expect(c->roofline, 0))
+        return ps_rounded(node_cost_roof_ps(c, ps + (double)w->call * c->call, work_moved(w)));
     ps += (double)w->bytes * c->byte + (double)w->call * c->call;
     return ps_rounded(ps);
+}
+
+/* node_cost_stated_ps: time of `flops` operations that load and store `bytes` together [ps], not
+ * rounded, where a program states both; numbers that are none cost nothing. By rates, bytes take
+ * the time of copied ones, after the operations. */
+static inline double node_cost_stated_ps(const struct node_cost *c, double flops, double bytes)
+{
+    const double operations = (flops > 0 ? flops : 0) * c->flop;
+    const double transfer = (bytes > 0 ? bytes : 0) * (c->roofline ? c->moved : c->byte);
+    if (!c->roofline) return operations + transfer;
+    return operations > transfer ? operations : transfer;
 }
 
 /* node_cost_code_ps: time of a piece of compiled code [ps], not rounded: `instructions` that
  * together do `w`, where w->bytes counts loads and stores. A processor loads, computes and stores
  * side by side, and a flop rate is that of code with its loads and index arithmetic; so the longest
- * of three counts (the roofline model): arithmetic    flop, div, sqrt, trig at their costs
+ * of three counts: arithmetic    flop, div, sqrt, trig at their costs
  *   instructions  each at c->instruction
- *   memory        half the bytes at the cost of a copied byte, as a copy loads and stores each
+ *   memory        half the bytes at the cost of a copied byte, as a copy loads and stores each;
+ *                 roofline: all bytes at that of a byte moved
  * Calls cost what their instructions do. */
 static inline double node_cost_code_ps(const struct node_cost *c, const struct work *w,
                                        uint64_t instructions)
@@ -40,7 +69,7 @@ static inline double node_cost_code_ps(const struct node_cost *c, const struct w
     double arithmetic = (double)w->flop * c->flop + (double)w->div * c->div;
     arithmetic += (double)w->sqrt * c->sqrt + (double)w->trig * c->trig;
     const double issue = (double)instructions * c->instruction,
-                 memory = 0.5 * (double)w->bytes * c->byte;
+                 each = c->roofline ? c->moved : 0.5 * c->byte, memory = (double)w->bytes * each;
     const double longer = arithmetic > issue ? arithmetic : issue;
     return longer > memory ? longer : memory;
 }

@@ -82,6 +82,7 @@ struct run_result {
     /* bodies and degrees of freedom of the model that was built; 0: no model */
     int nbody, nu;
     int64_t makespan_ps;
+    int64_t working_set; /* of a rank [B], as the node's roofline model took it; else 0 */
     int nrank, nstage;
     char stage_name[RUN_MAX_STAGES][24];
     struct stage_time *stage;  /* (nrank x nstage), in the run's arena */

@@ -60,6 +60,20 @@ static struct world_load load_of(const struct program_run *r, int64_t largest)
                                .leftovers = r->rank->leftovers};
 }
 
+/* What a rank passes over: the memory that a built-in program works in, the largest of any rank;
+ * of people's own programs what the scenario says. Rates do not ask. */
+static int64_t working_set(const struct program_run *r)
+{
+    size_t most = 0;
+    if (r->spec.machine.node.model != NODE_ROOFLINE) return 0;
+    if (r->spec.kernel.own) return r->spec.program.working_set;
+    for (int i = 0; i < r->spec.nrank; i++) {
+        const size_t own = r->rank->workspace_bytes(r->job, i);
+        if (own > most) most = own;
+    }
+    return (int64_t)most;
+}
+
 const char *launch_alone(const struct program_run *r, const struct machine_spec *m,
                          const struct record_spec *record, int64_t largest)
 {
@@ -86,6 +100,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     struct world_load load = load_of(r, largest);
     load.scratch = world;
+    load.working_set = working_set(r);
     const char *alone = world_alone(m, &load, record);
     load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
     out->threads = load.threads;

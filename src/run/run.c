@@ -14,7 +14,7 @@
 #include "guest/guest_program.h"
 #include "hosts/hosts_copy.h"
 #include "kernel/programs.h"
-#include "machine/node_cost.h"
+#include "machine/node_use.h"
 #include "run/launch.h"
 #include "run/omission.h"
 #include "schedule/schedule_program.h"
@@ -197,7 +197,9 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     /* Serial codes may have a rate of their own. */
     struct node_spec node = r->spec.machine.node;
     if (node.serial_rate > 0) node.flop_rate = node.serial_rate;
-    const struct node_cost cost = node_cost_make(&node);
+    /* One processor has the data of all ranks, and its caches and memory for itself. */
+    const struct node_use use = node_use_alone(size_count(out->working_set, out->nrank));
+    const struct node_cost cost = node_use_cost(&node, &use);
     const struct work_price price = {price_ps, &cost};
     /* Against the reference first, then the serial codes, whose times are the numerators of
      * every speedup. */
@@ -282,6 +284,21 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 
 /* --- before it runs --------------------------------------------------------------------------- */
 
+/* Before it runs the memory of a built-in program is an estimate. */
+static void tell_node(const struct run_spec *spec, const struct program_estimate *k, char *text,
+                      int size)
+{
+    struct node_use use;
+    struct err ignored;
+    err_clear(&ignored);
+    const bool known = !spec->kernel.own && isfinite(k->rank_bytes);
+    const int64_t set = spec->kernel.own ? spec->program.working_set
+                                         : (known ? (int64_t)k->rank_bytes : 0);
+    text[0] = '\0';
+    if (node_use_make(&spec->machine, spec->nrank, set, &use, &ignored))
+        node_use_tell(&spec->machine.node, &use, text, size);
+}
+
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
 {
     memset(out, 0, sizeof *out);
@@ -309,6 +326,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
          * rank's own. */
         const double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
+        tell_node(spec, &k, out->node, sizeof out->node);
         out->host_bytes =
             spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + RANK_BYTES) + k.scene_bytes;
     }

@@ -56,6 +56,7 @@ struct run_estimate {
     int64_t nbody, nu; /* bodies, degrees of freedom */
     double metre, kilogram, second; /* the model's units in SI; 0: no model */
     double messages, bytes, flops;
+    char node[320];    /* what its computing costs by (node_use_tell); "": nothing to be told */
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
     int threads;       /* of the host, on all of its processors */

@@ -57,6 +57,9 @@ struct field {
                   int size);   /* FIELD_TEXT: whether it may be this, else a clause why not;
                                   NULL: any text may */
     bool label;                /* true: for people only, no part of a run's identity */
+    /* whether the field cannot act in a struct at `base`, whatever its value: then it is no part of
+     * the identity; NULL: it always is */
+    bool (*dormant)(const void *base);
 };
 
 /* One struct of run_spec with its fields. */

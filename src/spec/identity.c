@@ -8,7 +8,8 @@
  *     model.file = sha256 ..
  *
  * A row that is added to a table, moved or given another default text of the same value changes
- * nothing here. Labels (titles) and the repetition number are no part of it. */
+ * nothing here. Labels (titles) and the repetition number are no part of it, nor are settings that
+ * another one puts to sleep (field.h, `dormant`). */
 #include "spec/identity.h"
 
 #include <stdio.h>
@@ -28,6 +29,7 @@ static const char program_key[] = "program.file = sha256 ";
 struct part {
     struct text fallback, full, own;
     void *bytes;
+    void *acting; /* the same without settings that cannot act */
     bool known;
 };
 
@@ -50,6 +52,7 @@ struct identity *identity_create(const struct field_table *const *table, int n)
         field_defaults(table[i], base, a);
         fields_print(table[i], base, false, &x->part[i].fallback);
         x->part[i].bytes = memory_take(table[i]->size, 1);
+        x->part[i].acting = memory_take(table[i]->size, 1);
     }
     arena_destroy(a);
     return x;
@@ -62,6 +65,7 @@ void identity_destroy(struct identity *x)
         text_free(&x->part[i].full);
         text_free(&x->part[i].own);
         free(x->part[i].bytes);
+        free(x->part[i].acting);
     }
     if (x != NULL) free(x->part);
     free(x);
@@ -95,6 +99,22 @@ static void add_differences(const char *full, const char *fallback, struct text 
     }
 }
 
+/* Settings that cannot act in `bytes` get their defaults in p->acting. False: all can act, so that
+ * p->acting says nothing. A dormant setting is one number: it needs no memory. */
+static bool leave_dormant(const struct field_table *t, const void *bytes, struct part *p)
+{
+    bool any = false;
+    char why[160];
+    for (int i = 0; i < t->nfield; i++) {
+        const struct field *f = &t->field[i];
+        if (f->dormant == NULL || !f->dormant(bytes)) continue;
+        if (!any) memcpy(p->acting, bytes, t->size);
+        any = true;
+        CHECK(field_set(f, p->acting, f->fallback, NULL, why, sizeof why));
+    }
+    return any;
+}
+
 /* The texts of table i; the first table's struct is the whole run, which always changes. */
 static const struct part *print_part(struct identity *x, int i, const void *base)
 {
@@ -105,7 +125,14 @@ static const struct part *print_part(struct identity *x, int i, const void *base
     if (i > 0 && p->known && memcmp(p->bytes, bytes, t->size) == 0) return p;
     p->full.length = p->own.length = 0;
     fields_print(t, bytes, false, &p->full);
-    add_differences(p->full.s, p->fallback.s, &p->own);
+    if (leave_dormant(t, bytes, p)) {
+        struct text acting = {0};
+        fields_print(t, p->acting, false, &acting);
+        add_differences(acting.s, p->fallback.s, &p->own);
+        text_free(&acting);
+    } else {
+        add_differences(p->full.s, p->fallback.s, &p->own);
+    }
     memcpy(p->bytes, bytes, t->size);
     p->known = true;
     return p;

@@ -253,3 +253,17 @@ const char *machine_idle_without_collectives(const struct run_spec *r)
                ? NULL
                : "this kernel calls no collective that it chooses";
 }
+
+/* Rates know operations alone: where data lie makes no difference. */
+bool machine_dormant_unless_roofline(const void *machine)
+{
+    return ((const struct machine_spec *)machine)->node.model != NODE_ROOFLINE;
+}
+
+/* The same question of a whole run, with its answer for people. */
+const char *machine_idle_unless_roofline(const struct run_spec *r)
+{
+    return machine_dormant_unless_roofline(&r->machine)
+               ? "node.model 'rates' knows neither caches nor memories"
+               : NULL;
+}

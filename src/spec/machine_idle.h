@@ -4,6 +4,8 @@
 #ifndef SPEC_MACHINE_IDLE_H
 #define SPEC_MACHINE_IDLE_H
 
+#include <stdbool.h>
+
 struct run_spec;
 
 /* machine_idle_*: why the settings that name the function cannot act in run r, as a clause ("only a
@@ -42,5 +44,10 @@ const char *machine_idle_unless_background(const struct run_spec *r);
 const char *machine_idle_in_runs(const struct run_spec *r);
 const char *machine_idle_in_programs(const struct run_spec *r);
 const char *machine_idle_without_collectives(const struct run_spec *r);
+const char *machine_idle_unless_roofline(const struct run_spec *r);
+
+/* machine_dormant_unless_roofline: whether the struct machine_spec at `machine` knows no caches
+ * (field.h). */
+bool machine_dormant_unless_roofline(const void *machine);
 
 #endif

@@ -40,6 +40,22 @@ static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
+static const char *const offloads[] = {"handshakes", "none", "copies", NULL};
+static const char *const node_models[] = {"rates", "roofline", NULL};
+
+/* Numbers of one cache or of the memory. They act, and are part of an identity, with node.model
+ * 'roofline' alone: machine files state them, and runs by rates stay what they were. */
+#define LEVEL(name, member)                                                                        \
+    AT(node.level[name].member), .idle = machine_idle_unless_roofline,                             \
+        .dormant = machine_dormant_unless_roofline
+#define LEVEL_RATE(name, member)                                                                   \
+    .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, LEVEL(name, member), .min = 0, .max = 1e15,        \
+    .fallback = "unlimited", .zero = "unlimited"
+#define LEVEL_SIZE(name)                                                                           \
+    .kind = FIELD_INT64, .unit = UNIT_BYTES, LEVEL(name, bytes), .min = 0, .max = 1e12,            \
+    .fallback = "0 B"
+#define LEVEL_COUNT(name) .kind = FIELD_INT, LEVEL(name, processors), .max = 1 << 20
+
 /* A price or a power, 0 where the file states none. */
 #define PRICE(member)                                                                              \
     .kind = FIELD_REAL, AT(price.member), .min = 0, .max = 1e12, .fallback = "0",            \
@@ -168,6 +184,39 @@ static const struct field fields[] = {
      .max = 1e15, .fallback = "unlimited", .zero = "unlimited",
      .doc = "rate of memory copies by the program (packing)"},
 
+    /* Caches and memory (docs/nodes.md), the nearest first. */
+    {.key = "node.model", .kind = FIELD_CHOICE, AT(node.model), .choice = node_models,
+     .fallback = "rates",
+     .doc = "what computing costs: rates: each operation at its price; roofline: the longer one of "
+            "operations and bytes moved, by the level where the working set lies (docs/nodes.md)"},
+    {.key = "node.l1.size", LEVEL_SIZE(NODE_L1),
+     .doc = "capacity of the first cache of a processor, 0 B: none"},
+    {.key = "node.l1.bandwidth", LEVEL_RATE(NODE_L1, bandwidth),
+     .doc = "bytes that a processor loads from and stores to its first cache"},
+    /* The second and third cache may belong to several processors: a bandwidth of one alone, one
+     * of all together. */
+    {.key = "node.l2.size", LEVEL_SIZE(NODE_L2), .doc = "capacity of the second cache, 0 B: none"},
+    {.key = "node.l2.bandwidth", LEVEL_RATE(NODE_L2, bandwidth),
+     .doc = "bytes between the second cache and one processor"},
+    {.key = "node.l2.shared", LEVEL_RATE(NODE_L2, shared),
+     .doc = "bytes between one second cache and all its processors together"},
+    {.key = "node.l2.processors", LEVEL_COUNT(NODE_L2), .min = 1, .fallback = "1",
+     .doc = "processors that share one second cache, and its capacity"},
+    {.key = "node.l3.size", LEVEL_SIZE(NODE_L3), .doc = "capacity of the third cache, 0 B: none"},
+    {.key = "node.l3.bandwidth", LEVEL_RATE(NODE_L3, bandwidth),
+     .doc = "bytes between the third cache and one processor"},
+    {.key = "node.l3.shared", LEVEL_RATE(NODE_L3, shared),
+     .doc = "bytes between one third cache and all its processors together"},
+    {.key = "node.l3.processors", LEVEL_COUNT(NODE_L3), .min = 1, .fallback = "1",
+     .doc = "processors that share one third cache, and its capacity"},
+    /* The memory has no capacity: what does not fit cannot be run anyway. */
+    {.key = "node.memory.bandwidth", LEVEL_RATE(NODE_MEMORY, bandwidth),
+     .doc = "bytes between the memory and one processor that has it alone: STREAM on one"},
+    {.key = "node.memory.shared", LEVEL_RATE(NODE_MEMORY, shared),
+     .doc = "bytes between one memory and all its processors together: STREAM on all"},
+    {.key = "node.memory.processors", LEVEL_COUNT(NODE_MEMORY), .min = 0, .fallback = "0",
+     .doc = "processors that share one memory, counted through the nodes; 0: those of a node"},
+
     /* The wire (docs/network.md 1). Zero load: T = R hop_latency + (S - 1) flits + end_latency. */
     {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels,
      .fallback = "link",
@@ -268,6 +317,11 @@ static const struct field fields[] = {
      AT(software.recv_copy), .min = 0,
      .max = 1, .fallback = "0 s/B", .idle = machine_idle_recv_copy,
      .doc = "processor time per byte received"},
+    {.key = "software.copy_traffic", .kind = FIELD_REAL, .unit = UNIT_NONE,
+     AT(software.copy_traffic), .idle = machine_idle_unless_roofline,
+     .dormant = machine_dormant_unless_roofline, .min = 0, .max = 16, .fallback = "0",
+     .doc = "bytes that each byte copied by message software moves through the memory: when ranks "
+            "share one (node.memory.shared), copies take at least their part of its time"},
     {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0,
      .max = 10,
      .fallback = "0 s", .idle = machine_idle_gap,
@@ -312,6 +366,12 @@ static const struct field fields[] = {
             "...} may give send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, "
             "gap_per_byte, protocol (eager, rendezvous, synchronous) and rendezvous.latency; what "
             "it does not give is software's"},
+    /* Who answers while a processor computes, and who copies. */
+    {.key = "software.offload", .kind = FIELD_CHOICE, AT(software.offload), .choice = offloads,
+     .fallback = "handshakes",
+     .doc = "what a network engine does beside the processor: handshakes of large messages; none, "
+            "so that these wait while a processor computes; copies, beside the handshakes "
+            "(docs/nodes.md)"},
     {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server),
      .fallback = "false",
      .doc = "both ends of every message pass one server of the whole machine (TCP loopback)"},

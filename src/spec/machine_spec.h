@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "spec/level_list.h"
+#include "spec/node_spec.h"
 #include "spec/price_spec.h"
 #include "spec/routing_list.h"
 #include "spec/software_spec.h"
@@ -63,21 +64,6 @@ struct topology_spec {
     int *failed_router;    /* (nfailed_router) that do not work, borrowed */
     int nlink_weight;  /* graph: 0 or nlink */
     int *link_weight;  /* graph: what a route over each link counts, borrowed */
-};
-
-/* What computing costs on one processor. A rate holds for small dense double-precision code. */
-struct node_spec {
-    double flop_rate;      /* additions and multiplications [flop/s] */
-    double serial_rate; /* the same of the serial codes that speedups are held against [flop/s], 0:
-                           flop_rate */
-    double clock;          /* [Hz], for the cycle counts below */
-    double div_cycles;     /* one division [cycles] */
-    double sqrt_cycles;    /* one square root [cycles] */
-    double trig_cycles;    /* one sine or cosine [cycles] */
-    double instruction_cycles; /* one instruction of a program compiled by `mimdsim cc` [cycles], 0:
-                                  node_cost.c */
-    double call_time;      /* overhead of one small operator call [s] */
-    double copy_bandwidth; /* memory copies [B/s] */
 };
 
 enum network_level {

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "spec/machine_idle.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct program_spec, member)
@@ -34,6 +35,13 @@ static const char *idle_unless_computing(const struct run_spec *r)
     const char *why = idle_unless_own(r);
     if (why != NULL) return why;
     return r->program.kind != PROGRAM_SCHEDULE ? NULL : "a schedule says what its computing costs";
+}
+
+/* Rates do not ask where data lie. */
+static const char *idle_unless_roofline(const struct run_spec *r)
+{
+    const char *why = idle_unless_computing(r);
+    return why != NULL ? why : machine_idle_unless_roofline(r);
 }
 
 static const struct field fields[] = {
@@ -72,6 +80,17 @@ static const struct field fields[] = {
      .idle = idle_unless_computing,
      .doc =
          "computing time is multiplied by it: measured time over predicted time of the same code"},
+    /* Where the data of its loops lie: nothing in its code says how often they come back. */
+    {.key = "working_set",
+     .kind = FIELD_INT64,
+     .unit = UNIT_BYTES,
+     AT(working_set),
+     .min = 0,
+     .max = 1e15,
+     .fallback = "0 B",
+     .idle = idle_unless_roofline,
+     .doc = "bytes that the loops of a rank pass over again and again, for the caches of "
+            "machine.node.model 'roofline'; 0 B: the first cache holds them"},
 };
 
 const struct field_table program_table = {

@@ -42,6 +42,8 @@ struct program_spec {
     char arguments[512]; /* of an MPI program, divided as a shell divides words */
     enum program_cost cost;
     double factor; /* computing time is multiplied by it */
+    int64_t working_set; /* what loops of a rank pass over again and again [B]; 0: the first cache
+                            holds it */
     /* What the plan found; no settings. */
     enum program_kind kind;
     char hash[65];          /* SHA-256 of the image, or of source, compiler and flags; "": none */

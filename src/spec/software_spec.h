@@ -17,6 +17,13 @@ enum message_protocol {
                           */
 };
 
+/* Who makes what of a message (vp/offload.h). */
+enum offload {
+    OFFLOAD_HANDSHAKES, /* large messages shake hands whatever the processors do */
+    OFFLOAD_NONE,       /* only while a processor is in message software */
+    OFFLOAD_COPIES      /* an engine also makes the copies */
+};
+
 enum { SOFTWARE_MAX_SEGMENTS = 8 };
 
 /* Message software of one range of sizes, up to the next segment. In a list of software_spec a time
@@ -44,6 +51,9 @@ struct software_spec {
     double recv_overhead;      /* o_r: processor time to receive [s] */
     double send_copy;          /* processor time per byte sent [s/B] */
     double recv_copy;          /* processor time per byte received [s/B] */
+    /* bytes that a copied byte moves through the memory that ranks share; 0: through none. Acts
+     * with the roofline model of nodes */
+    double copy_traffic;
     double gap;                /* g: least time between two injections of one node [s] */
     /* G of the network interface [s/B]; the slower of this and the wire rules */
     double gap_per_byte;
@@ -58,6 +68,7 @@ struct software_spec {
     int nsegment;
     /* by rising `from`, the first from 0 B */
     struct software_segment segment[SOFTWARE_MAX_SEGMENTS];
+    enum offload offload;
     /* one shared server per machine handles every message (TCP loopback) */
     bool kernel_server;
     double kernel_time;        /* its service time per message end [s] */

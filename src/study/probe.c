@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "machine/node_use.h"
 #include "machine/topology.h"
 #include "run/run.h"
 #include "study/probe_collective.h"
@@ -303,21 +304,43 @@ static bool rate_among(const struct machine_spec *m, const char *kernel, int ran
     return true;
 }
 
-/* Serial codes. Their size is the order of a system or the length of vectors. */
+bool probe_computes(enum probe_quantity q) { return q >= PROBE_LINPACK && q <= PROBE_MEMORY_COPY; }
+
+/* What a code passes over on one processor [B]: the matrix of LINPACK, the vectors of an inner
+ * product; those of STREAM are longer than any cache by its rule. */
+static int64_t code_bytes(enum probe_quantity q, int n)
+{
+    if (q == PROBE_LINPACK) return 8 * (int64_t)n * n;
+    return q == PROBE_INNER_PRODUCT ? 16 * (int64_t)n : INT64_MAX;
+}
+
+/* Each is executed with its operations and bytes counted (rates.h). */
+static struct rate_count code_of(enum probe_quantity q, int n)
+{
+    if (q == PROBE_LINPACK) return rate_linpack(n);
+    if (q == PROBE_INNER_PRODUCT) return rate_inner_product(n);
+    if (q == PROBE_MEMORY_COPY) return rate_stream(RATE_COPY, n);
+    return rate_stream((enum rate_stream)(q - PROBE_STREAM_COPY), n);
+}
+
+/* Serial codes. `at` is the order or the length of vectors, of STREAM how many processors run it at
+ * once: as ranks are placed, so that those that share a memory do. */
 static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate,
                       struct err *e)
 {
-    /* `at` is the order or length where the published number has one. */
-    int n = q == PROBE_LINPACK || q == PROBE_INNER_PRODUCT ? (int)at : VECTOR;
-    struct rate_count c;
+    const bool sized = q == PROBE_LINPACK || q == PROBE_INNER_PRODUCT;
+    const int n = sized ? (int)at : VECTOR, processors = sized || at < 1 ? 1 : (int)at;
+    struct node_use use;
     if (n < 1 || n > MEBIBYTE)
         return err_set(e, ERR_CONFIG, "%s: %s of %g elements", m->name, probe_name(q), at);
-    if (q == PROBE_LINPACK) c = rate_linpack(n);
-    else if (q == PROBE_INNER_PRODUCT) c = rate_inner_product(n);
-    else if (q == PROBE_MEMORY_COPY) c = rate_stream(RATE_COPY, n);
-    else c = rate_stream((enum rate_stream)(q - PROBE_STREAM_COPY), n);
-    *rate = rate_of(&m->node, &c) *
-            (q == PROBE_MEMORY_COPY ? 0.5 : 1); /* STREAM counts a byte copied twice */
+    if (processors > machine_spec_processors(m))
+        return err_set(e, ERR_CONFIG, "%s: %s on %d of %lld processors", m->name, probe_name(q),
+                       processors, (long long)machine_spec_processors(m));
+    if (!node_use_make(m, processors, code_bytes(q, n), &use, e)) return false;
+    const struct rate_count c = code_of(q, n);
+    const struct node_cost cost = node_use_cost(&m->node, &use);
+    /* STREAM counts a byte copied twice */
+    *rate = rate_at(&cost, &c) * processors * (q == PROBE_MEMORY_COPY ? 0.5 : 1);
     return true;
 }
 

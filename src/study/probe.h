@@ -35,12 +35,13 @@ enum probe_quantity {
     PROBE_HALVES,  /* ranks i and i + P/2 exchange: bytes that each sends a second [B/s]; at: ranks,
                       even */
     PROBE_LINPACK, /* LINPACK benchmark of order at [flop/s] */
-    PROBE_STREAM_COPY, /* the four kernels of STREAM [B/s] */
+    /* the four kernels of STREAM, all processors together [B/s]; at: processors, 0: one */
+    PROBE_STREAM_COPY,
     PROBE_STREAM_SCALE,
     PROBE_STREAM_ADD,
     PROBE_STREAM_TRIAD,
     PROBE_INNER_PRODUCT, /* of vectors of at elements [flop/s] */
-    PROBE_MEMORY_COPY,   /* bytes copied from memory to memory [B/s] */
+    PROBE_MEMORY_COPY,   /* bytes copied from memory to memory [B/s]; at: processors, 0: one */
     PROBE_BROADCAST, /* collectives by the machine's algorithms, the slowest rank [s]; at: bytes,
                         and ranks */
     PROBE_REDUCE,
@@ -63,6 +64,10 @@ enum probe_quantity {
  * none. */
 const char *probe_name(enum probe_quantity q);
 enum probe_quantity probe_find(const char *name);
+
+/* probe_computes: whether a quantity is one of computing, so that the model of the node matters and
+ * the network does not. */
+bool probe_computes(enum probe_quantity q);
 
 /* probe_contends: whether messages of several ranks meet on the wires, so that the level of the
  * network matters. Where two ranks talk all levels agree. */

@@ -9,9 +9,12 @@
 
 #include "base/arena.h"
 #include "base/check.h"
-#include "machine/node_cost.h"
 
 /* ---- LINPACK ---- */
+
+/* Bytes that an element loads and stores, 8 for each number: y, x and y again; x and x again; x;
+ * two vectors. */
+enum { DAXPY_BYTES = 24, DSCAL_BYTES = 16, IDAMAX_BYTES = 8, INNER_BYTES = 16 };
 
 /* y += s x. As in the benchmark's library, a multiplier of zero ends the call at once. */
 static void daxpy(int n, double s, const double *x, double *y, struct work *w)
@@ -20,6 +23,7 @@ static void daxpy(int n, double s, const double *x, double *y, struct work *w)
     if (n <= 0 || s == 0) return;
     for (int i = 0; i < n; i++) y[i] += s * x[i];
     w->flop += 2 * (uint64_t)n;
+    w->moved += DAXPY_BYTES * (uint64_t)n;
 }
 
 /* x *= s */
@@ -28,6 +32,7 @@ static void dscal(int n, double s, double *x, struct work *w)
     w->call++;
     for (int i = 0; i < n; i++) x[i] *= s;
     w->flop += (uint64_t)n;
+    w->moved += DSCAL_BYTES * (uint64_t)n;
 }
 
 /* The index of the largest |x[i]|, the first of equals. Comparisons are no floating-point
@@ -36,6 +41,7 @@ static int idamax(int n, const double *x, struct work *w)
 {
     int largest = 0;
     w->call++;
+    w->moved += IDAMAX_BYTES * (uint64_t)n;
     for (int i = 1; i < n; i++)
         if (fabs(x[i]) > fabs(x[largest])) largest = i;
     return largest;
@@ -115,11 +121,13 @@ struct rate_count rate_linpack_summed(int n)
         c.work.div++;
         c.work.call += 2 + m + 1;
         c.work.flop += m + 2 * m * m + 2 * m;
+        c.work.moved += IDAMAX_BYTES * (m + 1) + DSCAL_BYTES * m + DAXPY_BYTES * (m * m + m);
     }
     for (uint64_t m = 0; m < (uint64_t)n; m++) {
         c.work.div++;
         c.work.call++;
         c.work.flop += 2 * m;
+        c.work.moved += DAXPY_BYTES * m;
     }
     return c;
 }
@@ -182,7 +190,10 @@ struct rate_count rate_stream(enum rate_stream kind, int n)
     uint64_t bytes = (uint64_t)n * (uint64_t)vectors[kind] * sizeof(double);
     return (struct rate_count){
         .nominal = (double)bytes,
-        .work = {.call = 1, .flop = (uint64_t)(n * flops[kind]), .bytes = bytes / 2}};
+        .work = {.call = 1,
+                 .flop = (uint64_t)(n * flops[kind]),
+                 .bytes = bytes / 2,
+                 .moved = bytes}};
 }
 
 /* Two flops per element; nothing is stored, so no bytes are copied. */
@@ -198,14 +209,23 @@ struct rate_count rate_inner_product(int n)
     /* A sum of halves, exact in double for every n that is asked for (at most 2^20). */
     CHECK(sum == 0.25 * n * (n - 1.0));
     arena_destroy(memory);
-    return (struct rate_count){.nominal = 2.0 * n, .work = {.call = 1, .flop = 2 * (uint64_t)n}};
+    return (struct rate_count){.nominal = 2.0 * n,
+                               .work = {.call = 1,
+                                        .flop = 2 * (uint64_t)n,
+                                        .moved = INNER_BYTES * (uint64_t)n}};
 }
 
 /* The rate is nominal work over simulated time of the executed work. A node without costs has an
  * infinite rate. */
 double rate_of(const struct node_spec *node, const struct rate_count *count)
 {
-    struct node_cost cost = node_cost_make(node);
-    int64_t ps = node_cost_ps(&cost, &count->work);
+    const struct node_cost cost = node_cost_make(node);
+    return rate_at(&cost, count);
+}
+
+/* Of any costs: those of a cache, or of a memory that others use, too. */
+double rate_at(const struct node_cost *cost, const struct rate_count *count)
+{
+    int64_t ps = node_cost_ps(cost, &count->work);
     return ps > 0 ? count->nominal / ((double)ps * 1e-12) : INFINITY;
 }

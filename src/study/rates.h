@@ -8,6 +8,7 @@
 #define STUDY_RATES_H
 
 #include "base/work.h"
+#include "machine/node_cost.h"
 #include "spec/machine_spec.h"
 
 /* What one execution of a code did. */
@@ -38,7 +39,9 @@ struct rate_count rate_stream(enum rate_stream kind, int n);
 /* rate_inner_product: of two vectors of n doubles; nominal: 2 n. */
 struct rate_count rate_inner_product(int n);
 
-/* rate_of: nominal operations or bytes a second on a processor of `node`. */
+/* rate_of: nominal operations or bytes a second on a processor of `node`, whose first cache holds
+ * the data. rate_at: at these costs. */
 double rate_of(const struct node_spec *node, const struct rate_count *count);
+double rate_at(const struct node_cost *cost, const struct rate_count *count);
 
 #endif

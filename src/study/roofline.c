@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/check.h"
 #include "vp/cost.h"
 
 const char *roofline_word(enum roof roof)
@@ -45,9 +46,10 @@ static void add(struct total *t, const struct stage_time *s)
 static double rate_of(double flops, double ps) { return ps > 0 ? flops / (ps * 1e-12) : INFINITY; }
 
 /* Times are summed over processors, so flops over them are one processor's rate. */
-static struct roofline_row row_of(const struct machine_spec *m, int stage, const struct total *t)
+static struct roofline_row row_of(const struct machine_spec *m, const struct node_use *use,
+                                  int stage, const struct total *t)
 {
-    const struct software_cost cost = software_cost_make(&m->software);
+    const struct software_cost cost = software_cost_used(m, use);
     const int64_t mean = t->messages > 0 ? llround(t->bytes / t->messages) : 0;
     const struct message_cost *c = message_cost(&cost, mean);
     /* Who sends a message handles one that comes in, too, in the mean over all ranks. */
@@ -80,8 +82,13 @@ struct roofline_row *roofline_rows(const struct machine_spec *m, const struct ru
         add(&all, &r->stage[i]);
     }
     if (all.flops <= 0) return row;
-    row[(*n)++] = row_of(m, -1, &all);
+    struct node_use use;
+    struct err e;
+    err_clear(&e);
+    /* The run has placed its ranks on this machine: it holds them. */
+    CHECK(node_use_make(m, r->nrank, r->working_set, &use, &e));
+    row[(*n)++] = row_of(m, &use, -1, &all);
     for (int k = 0; k < r->nstage; k++)
-        if (stage[k].flops > 0) row[(*n)++] = row_of(m, k, &stage[k]);
+        if (stage[k].flops > 0) row[(*n)++] = row_of(m, &use, k, &stage[k]);
     return row;
 }

@@ -90,6 +90,8 @@ int uncertain_list(const struct origin *o, int n, const struct machine_spec *at,
         text_free(&full);
         /* published figures that no run uses are in the list of origins, too */
         if (f == NULL || !is_number(f)) continue;
+        /* what cannot act is certain enough */
+        if (f->dormant != NULL && f->dormant(at)) continue;
         struct uncertain u = {o[i].key, f, o[i].min, o[i].max, o[i].evidence, true};
         const bool printed = u.high > u.low && u.low >= 0;
         if (!printed) u.printed = false;

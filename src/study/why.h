@@ -13,7 +13,7 @@
 #include "spec/run_spec.h"
 #include "study/roofline.h"
 
-enum { WHY_RANKS = 10, WHY_MOST_PARAMETERS = 32, WHY_MOST_LIMITS = 12 };
+enum { WHY_RANKS = 10, WHY_MOST_PARAMETERS = 40, WHY_MOST_LIMITS = 12 };
 
 /* Time of the path with one cause in one stage. */
 struct why_share {

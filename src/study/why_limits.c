@@ -48,6 +48,8 @@ static void no_computing(struct machine_spec *m)
     m->node.flop_rate = m->node.clock = 0;
     m->node.div_cycles = m->node.sqrt_cycles = m->node.trig_cycles = m->node.call_time = 0;
     m->node.copy_bandwidth = 0;
+    for (int i = 0; i < NODE_LEVELS; i++)
+        m->node.level[i].bandwidth = m->node.level[i].shared = 0;
 }
 
 static void no_contention(struct machine_spec *m) { m->network.level = LEVEL_LOGGP; }

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/check.h"
-#include "machine/node_cost.h"
+#include "machine/node_use.h"
 #include "study/why.h"
 #include "vp/cost.h"
 
@@ -22,6 +22,13 @@ enum parameter {
     TRIG,
     CALL,
     COPY,
+    L1_BANDWIDTH,
+    L2_BANDWIDTH,
+    L2_SHARED,
+    L3_BANDWIDTH,
+    L3_SHARED,
+    MEMORY_BANDWIDTH,
+    MEMORY_SHARED,
     SEND_OVERHEAD,
     SEND_COPY,
     RECV_OVERHEAD,
@@ -62,6 +69,15 @@ static const struct row {
     [TRIG] = {"machine.node.trig", AT(node.trig_cycles), NONE, false},
     [CALL] = {"machine.node.call", AT(node.call_time), NONE, false},
     [COPY] = {"machine.node.copy.bandwidth", AT(node.copy_bandwidth), NONE, true},
+    [L1_BANDWIDTH] = {"machine.node.l1.bandwidth", AT(node.level[NODE_L1].bandwidth), NONE, true},
+    [L2_BANDWIDTH] = {"machine.node.l2.bandwidth", AT(node.level[NODE_L2].bandwidth), NONE, true},
+    [L2_SHARED] = {"machine.node.l2.shared", AT(node.level[NODE_L2].shared), NONE, true},
+    [L3_BANDWIDTH] = {"machine.node.l3.bandwidth", AT(node.level[NODE_L3].bandwidth), NONE, true},
+    [L3_SHARED] = {"machine.node.l3.shared", AT(node.level[NODE_L3].shared), NONE, true},
+    [MEMORY_BANDWIDTH] = {"machine.node.memory.bandwidth", AT(node.level[NODE_MEMORY].bandwidth),
+                          NONE, true},
+    [MEMORY_SHARED] = {"machine.node.memory.shared", AT(node.level[NODE_MEMORY].shared), NONE,
+                       true},
     [SEND_OVERHEAD] = {"machine.software.send.overhead", AT(software.send_overhead),
                        SEGMENT(send_overhead), false},
     [SEND_COPY] = {"machine.software.send.copy", AT(software.send_copy), SEGMENT(send_copy), false},
@@ -128,17 +144,31 @@ bool why_scale(struct machine_spec *m, const char *key, double factor)
 struct priced {
     struct node_cost node;
     struct software_cost software;
+    bool engine; /* which makes the copies of message software */
 };
 
-static struct priced price(const struct machine_spec *m)
+static struct priced price(const struct machine_spec *m, const struct node_use *u)
 {
-    return (struct priced){node_cost_make(&m->node), software_cost_make(&m->software)};
+    return (struct priced){node_use_cost(&m->node, u), software_cost_used(m, u),
+                           m->software.offload == OFFLOAD_COPIES};
+}
+
+/* The ranks of the run on its machine: placed again, as the run has placed them. */
+static struct node_use use_of(const struct machine_spec *m, const struct run_result *r)
+{
+    struct node_use u;
+    struct err e;
+    err_clear(&e);
+    CHECK(node_use_make(m, r->nrank, r->working_set, &u, &e));
+    return u;
 }
 
 /* What step `s` takes at these prices, for the causes that have several parameters. */
 static double duration(const struct priced *q, const struct path_step *s, bool server)
 {
     const struct message_cost *c = message_cost(&q->software, s->count);
+    /* Copies are the processor's, or steps of their own where an engine makes them. */
+    const double send = q->engine ? 0 : c->send_byte, recv = q->engine ? 0 : c->recv_byte;
     double software = 0;
     switch (s->cause) {
     case PATH_COMPUTE:
@@ -147,11 +177,15 @@ static double duration(const struct priced *q, const struct path_step *s, bool s
         return (double)byte_cost(q->software.kernel_time, q->software.kernel_byte, s->count);
     case PATH_MEMORY:
         return (double)byte_cost(q->software.shared_latency, q->software.shared_byte, s->count);
+    case PATH_ENGINE_SEND:
+        return (double)byte_cost(0, c->send_byte, s->count);
+    case PATH_ENGINE_RECV:
+        return (double)byte_cost(0, c->recv_byte, s->count);
     case PATH_SEND:
-        software = (double)byte_cost(c->send, c->send_byte, s->count);
+        software = (double)byte_cost(c->send, send, s->count);
         break;
     case PATH_RECV:
-        software = (double)byte_cost(c->recv, c->recv_byte, s->count);
+        software = (double)byte_cost(c->recv, recv, s->count);
         break;
     default:
         CHECK(false);
@@ -165,7 +199,8 @@ static double duration(const struct priced *q, const struct path_step *s, bool s
 static bool has_several(const struct path_step *s)
 {
     return s->cause == PATH_COMPUTE || s->cause == PATH_MEMORY || s->cause == PATH_SEND ||
-           s->cause == PATH_RECV || s->cause == PATH_SERVER;
+           s->cause == PATH_RECV || s->cause == PATH_SERVER || s->cause == PATH_ENGINE_SEND ||
+           s->cause == PATH_ENGINE_RECV;
 }
 
 /* The parameter of a cause that has one; PARAMETERS: none. Ports without a bandwidth of their own
@@ -223,13 +258,14 @@ static int longer_first(const void *a, const void *b)
 void why_contributions(const struct machine_spec *m, struct why *out)
 {
     double time[PARAMETERS] = {0};
-    struct priced plain = price(m), doubled[KERNEL_BYTE + 1];
+    const struct node_use use = use_of(m, &out->run);
+    struct priced plain = price(m, &use), doubled[KERNEL_BYTE + 1];
     /* Those behind KERNEL_BYTE are the only parameter of their causes: add_whole needs no
      * prices. */
     for (int p = 0; p <= KERNEL_BYTE; p++) {
         struct machine_spec changed = *m;
         scale(&changed, (enum parameter)p, 2);
-        doubled[p] = price(&changed);
+        doubled[p] = price(&changed, &use);
     }
     /* One pass over the path: millions of steps are possible, parameters are few. */
     const bool server = m->software.kernel_server;

@@ -33,3 +33,21 @@ struct software_cost software_cost_make(const struct software_spec *s)
         cost.message[i] = message_cost_make(&list[i], i + 1 < n ? list[i + 1].from : INT64_MAX);
     return cost;
 }
+
+/* The longer one of a copy alone and its part of the memory's time. */
+static double shared_byte(double own, double least) { return own > 0 && own < least ? least : own; }
+
+struct software_cost software_cost_used(const struct machine_spec *m, const struct node_use *u)
+{
+    struct software_cost cost = software_cost_make(&m->software);
+    const struct memory_level *memory = &m->node.level[NODE_MEMORY];
+    if (m->node.model != NODE_ROOFLINE || !(memory->shared > 0)) return cost;
+    /* The sharers copy all at once, as in an exchange, and each byte passes several times. */
+    const double least =
+        m->software.copy_traffic * u->sharers[NODE_MEMORY] / memory->shared * SIM_PS_PER_S;
+    for (int i = 0; i < SOFTWARE_MAX_SEGMENTS; i++) {
+        cost.message[i].send_byte = shared_byte(cost.message[i].send_byte, least);
+        cost.message[i].recv_byte = shared_byte(cost.message[i].recv_byte, least);
+    }
+    return cost;
+}

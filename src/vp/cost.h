@@ -3,6 +3,7 @@
 #define VP_COST_H
 
 #include "base/picoseconds.h"
+#include "machine/node_use.h"
 #include "sim/sim.h"
 #include "spec/software_spec.h"
 
@@ -37,5 +38,11 @@ static inline const struct message_cost *message_cost(const struct software_cost
 
 /* software_cost_make: from a machine's message software. */
 struct software_cost software_cost_make(const struct software_spec *s);
+
+/* software_cost_used: that of machine `m` whose ranks use their nodes like this: where copies pass
+ * a memory that ranks share (software.copy_traffic), a byte copied takes at least copy_traffic *
+ * sharers / shared bandwidth, its part of the memory's time while all of them copy. What copies
+ * nothing stays as it is. */
+struct software_cost software_cost_used(const struct machine_spec *m, const struct node_use *u);
 
 #endif

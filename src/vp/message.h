@@ -45,6 +45,8 @@ struct message {
     int64_t bytes;                       /* of the kernel's data */
     sim_ps sent;                         /* when the send began; for spans */
     sim_ps delay;                        /* rendezvous: contention of the hand-shake */
+    sim_ps copied;        /* when the sender's engine has copied it; 0: there is none */
+    uint32_t copied_path; /* node of that */
     int64_t tag;
     uint16_t size_class;
     uint16_t kind;

@@ -12,6 +12,7 @@
 #include "vp/explain.h"
 #include "vp/path.h"
 #include "vp/matching.h"
+#include "vp/offload.h"
 
 enum { POLL_PART = 8, SERIES_PART = 16 };
 
@@ -59,6 +60,7 @@ static void poll(struct vp *v, sim_ps expected)
  * slip is a bug and told as one. */
 static void need_time(struct vp *v, const char *what)
 {
+    offload_called(v);
     if (!v->matching) vp_misuse(v, "%s in a program that has promised to do without it "
                      "(a kernel in one file declares .wildcards = 1)", what);
 }

@@ -3,6 +3,7 @@
  * and the machine's software time. The sender's request is complete when the clear to send is
  * there, that of a synchronous message when its data arrived. */
 #include "base/check.h"
+#include "vp/offload.h"
 #include "vp/path.h"
 #include "vp/vp.h"
 
@@ -26,6 +27,8 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
                                    .active = REQUEST_SENDING,
                                    .file = v->comm.file,
                                    .line = v->comm.line};
+    /* The request does not wait for what an engine copies. */
+    m->net.path = v->path;
     travel(m, v, m->to, 0, v->clock);
 }
 
@@ -47,6 +50,7 @@ static uint32_t bind_path(const struct message *m, const struct comm_request *r,
 void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
 {
     struct vp *v = m->to;
+    now = offload_answer(v, now);
     const sim_ps ready = now + message_cost(&v->world->software, m->bytes)->rendezvous;
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_CLEAR_TO_SEND;
@@ -66,6 +70,17 @@ static void release_sender(struct message *m, int state)
     vp_notify(m->from, s, m->net.arrival);
 }
 
+/* When the data can leave, with its node: the sender's software, or its engine, may be busy. */
+static sim_ps leave(struct message *m)
+{
+    const sim_ps ready = offload_answer(m->from, m->net.arrival);
+    const bool computed = ready > m->net.arrival;
+    if (computed && m->from->world->path) m->net.path = vp_path_until(m->from, ready);
+    if (m->copied <= ready) return ready;
+    m->net.path = m->copied_path;
+    return m->copied;
+}
+
 /* Clear to send has arrived: the data leave. A synchronous protocol holds the sender until they
  * have arrived, any other lets it go on now. */
 static void cleared(struct message *m)
@@ -75,7 +90,7 @@ static void cleared(struct message *m)
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_DATA;
     if (!held) release_sender(m, REQUEST_SENT);
-    travel(m, m->from, m->to, m->bytes, m->net.arrival);
+    travel(m, m->from, m->to, m->bytes, leave(m));
 }
 
 /* Data never come before a receive matched: that is what the handshake was for. */
@@ -87,6 +102,7 @@ void rendezvous_deliver(struct message *m)
     }
     CHECK(m->kind == MESSAGE_DATA && m->receive);
     struct comm_request *r = m->receive;
+    offload_receive(m);
     /* Delays of request and answer count as contention of the whole message. */
     m->net.uncontended -= m->delay;
     release_sender(m, REQUEST_DELIVERED);

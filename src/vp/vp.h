@@ -53,8 +53,7 @@ struct vp {
     struct comm_request *posted, **posted_end;    /* receives without a message, in order */
     struct message *unexpected, **unexpected_end; /* messages without a receive, in order */
     struct matching *matching;                    /* timed programs: instead of `unexpected` */
-    /* messages so far: the lower half of their numbers */
-    uint32_t sent;
+    uint32_t sent; /* messages so far: the lower half of their numbers */
     int node, processor;
     uint64_t digest;     /* of what it received and when */
     sim_ps server_start; /* when the kernel server began with it */
@@ -62,6 +61,10 @@ struct vp {
     struct fiber *fiber;
     struct random noise;
     uint32_t path; /* node of `clock`, where critical paths are recorded */
+    bool called;   /* message software since it last computed (offload.h, as the next ones) */
+    uint32_t engine_path;  /* node of engine_free */
+    sim_ps engine_free;    /* when its engine has made the copies so far */
+    struct pieces *pieces; /* of computing, NULL: none are kept */
 } __attribute__((aligned(64)));
 
 struct world {

@@ -11,6 +11,7 @@
 #include "vp/explain.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
+#include "vp/offload.h"
 #include "vp/balance.h"
 #include "vp/path.h"
 #include "vp/vp.h"
@@ -24,7 +25,8 @@ static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
     const struct message_cost *s = message_cost(&w->software, m->bytes);
-    sim_ps begin = v->clock, cost = byte_cost(s->send, s->send_byte, m->bytes);
+    const double per_byte = w->machine->software.offload == OFFLOAD_COPIES ? 0 : s->send_byte;
+    sim_ps begin = v->clock, cost = byte_cost(s->send, per_byte, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -42,7 +44,8 @@ static void charge_receive(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
     const struct message_cost *s = message_cost(&w->software, m->bytes);
-    sim_ps begin = v->clock, cost = byte_cost(s->recv, s->recv_byte, m->bytes);
+    const double per_byte = w->machine->software.offload == OFFLOAD_COPIES ? 0 : s->recv_byte;
+    sim_ps begin = v->clock, cost = byte_cost(s->recv, per_byte, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -84,9 +87,11 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     vp_stage_time(v)->bytes += bytes;
     /* It is ready for the network when the sender's software has done its part. */
     charge_send(v, m);
+    offload_called(v);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
     m->net.path = v->path;
+    offload_send(v, m);
     /* The order of sending counts from here, before the network says when it arrives. */
     if (w->load->timed) matching_announce(m);
     return m;
@@ -126,6 +131,7 @@ static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const voi
  * here. */
 static void post(struct vp *v, struct comm_request *r)
 {
+    offload_called(v);
     /* Where a hand-shake waits for the receive to be posted, this is what it waits for. */
     if (v->world->path && path_keeps_losers(v->world->path)) r->path = vp_path_until(v, v->clock);
     if (v->matching) matching_post(v, r);
@@ -211,6 +217,7 @@ static void finish_synchronous(struct vp *v, struct comm_request *r)
 static void vp_wait(struct comm *c, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
+    offload_called(v);
     if (r->active == REQUEST_DONE) return;
     r->file = c->file;
     r->line = c->line;
@@ -286,6 +293,7 @@ static void vp_barrier(struct comm *c)
     /* Noise scales each piece of computing by a normal factor, never below zero; each
      * rank has a stream of its own, so that others' work does not move it. */
     sim_ps begin = v->clock;
+    offload_called(v);
     if (v->world->nrank > 1) {
         if (v->world->machine->software.barrier == BARRIER_HARDWARE) hardware_barrier(v);
         else collective_barrier(c, BARRIER_TAG);
@@ -307,6 +315,7 @@ static inline void compute(struct vp *v, sim_ps cost, const struct work *work)
     if (w->path && work) vp_path_work(v, begin, work);
     else vp_path(v, PATH_COMPUTE, begin, -1);
     vp_stage_time(v)->compute_ps += cost;
+    offload_computed(v, begin);
     if (w->record->spans) vp_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
 }
 

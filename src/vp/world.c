@@ -13,10 +13,12 @@
 #include "base/digest.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "machine/node_use.h"
 #include "measure/run_heartbeat.h"
 #include "vp/explain.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
+#include "vp/offload.h"
 #include "vp/path.h"
 #include "vp/team.h"
 #include "vp/vp.h"
@@ -29,6 +31,8 @@ static void arrived(struct message *m)
     switch ((enum message_kind)m->kind) {
     /* Timed programs match by simulated time, all others by order alone. */
     case MESSAGE_EAGER:
+        offload_receive(m);
+        /* fall through */
     case MESSAGE_REQUEST_TO_SEND:
         if (m->to->matching) matching_deliver(m->to, m);
         else mailbox_deliver(m->to, m);
@@ -222,9 +226,14 @@ static void name_stages(struct run_result *r, int nstage, const char *const *nam
 static bool build(struct world *w, struct err *e)
 {
     const struct machine_spec *m = w->machine;
+    if (!node_use_check(m, e) || !offload_check(m, e)) return false;
     w->topology = topology_create(&m->topology, w->scratch, e);
     if (!w->topology) return false;
     if (!placement_create(&w->placement, m, w->topology, w->nrank, w->scratch, e)) return false;
+    const struct node_use use = node_use_placed(m, &w->placement, w->load->working_set);
+    w->node_cost = node_use_cost(&m->node, &use);
+    w->software = software_cost_used(m, &use);
+    w->result->working_set = w->load->working_set;
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
     net_set_in_order(w->net, w->eager_only);
@@ -321,8 +330,6 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
         .pool = &pool,
         .nstage = load->nstage,
         .load = load,
-        .software = software_cost_make(&m->software),
-        .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
         /* Then a node's messages come in order and the network may use fewer events. */
         .eager_only = (!load->timed || load->no_synchronous) &&

@@ -26,6 +26,7 @@ struct world_load {
     int64_t largest_message; /* bytes; a promise (CHECK), -1: none. When every message is eager,
                                 sends of a node come in order and some levels need fewer events,
                                 with the same times */
+    int64_t working_set; /* what a rank passes over again and again [B], the largest of any */
     const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
     int noutput;
     struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */

@@ -106,6 +106,47 @@ static void a_pingpong_is_what_its_closed_form_says(void **state)
     plan_free(&p);
 }
 
+/* ---- nodes with a memory ---- */
+
+/* So slow a memory that it decides on nearly all computing: its bandwidth stands for what a run
+ * with a thousandth less of it takes longer, and the flop rate for next to nothing. By rates
+ * neither cache nor memory is a parameter. */
+static void a_memory_that_binds_is_a_parameter_of_the_path(void **state)
+{
+    (void)state;
+    static const char *const set[] = {"machine=t3e-300",
+                                      "n=64",
+                                      "ranks=16",
+                                      "level=loggp",
+                                      "kernel=dynamics",
+                                      "machine.node.l1.size=64 B",
+                                      "machine.node.memory.bandwidth=20 MB/s",
+                                      "machine.node.memory.shared=30 MB/s",
+                                      "machine.node.memory.processors=4",
+                                      "machine.node.model=roofline"};
+    static const char key[] = "machine.node.memory.shared";
+    for (int roofline = 1; roofline >= 0; roofline--) {
+        struct plan p = read_plan(9 + roofline, set);
+        struct arena *a = arena_create();
+        struct run_spec slower = p.run[0];
+        const struct why w = study(&p.run[0], a);
+        const int64_t share = why_contribution(&p.run[0], &w.run, key);
+        const int64_t flops = why_contribution(&p.run[0], &w.run, "machine.node.flop_rate");
+        assert_int_equal(why_contribution(&p.run[0], &w.run, "machine.node.memory.bandwidth"), 0);
+        assert_true(why_scale(&slower.machine, key, 1.001));
+        const int64_t longer = makespan(&slower, a) - w.run.makespan_ps;
+        if (roofline) {
+            assert_true(w.run.working_set > 64 && share > w.run.makespan_ps / 2);
+            assert_true(flops < share / 20);
+            assert_true(llabs(1000 * longer - share) < share / 50);
+        } else {
+            assert_true(share == 0 && longer == 0 && flops > 0);
+        }
+        arena_destroy(a);
+        plan_free(&p);
+    }
+}
+
 /* ---- derivatives ---- */
 
 static const char *const machines[] = {"t3e-300",     "paragon",    "paragon-am",
@@ -273,6 +314,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pingpong_is_what_its_closed_form_says),
+        cmocka_unit_test(a_memory_that_binds_is_a_parameter_of_the_path),
         cmocka_unit_test(counts_are_derivatives_to_the_picosecond),
         cmocka_unit_test(derivatives_with_contention_are_near),
         cmocka_unit_test(the_path_is_whole_everywhere),
