@@ -29,8 +29,9 @@ bool field_int_parse(const char *text, int64_t *value, char *why, int size)
     char *end;
     errno = 0;
     long long v = strtoll(text, &end, 10);
+    const bool digits = end != text;
     while (isspace((unsigned char)*end)) end++;
-    if (end == text || *end != '\0')
+    if (!digits || *end != '\0')
         return field_refuse(why, size, "not a whole number; expected one such as '16'");
     if (errno == ERANGE) return field_refuse(why, size, "out of range of 64-bit whole numbers");
     *value = v;

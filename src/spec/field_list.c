@@ -54,6 +54,10 @@ static bool scan_ints(const struct field *f, const char *text, int *value, int c
         if (n == capacity) return field_refuse(why, size, "too many entries");
         if (value != NULL) value[n] = v;
         n++;
+        /* "8+4" is a sum, not a list. */
+        if (*s == '+' || *s == '-')
+            return field_refuse(why, size,
+                                "not a list of whole numbers; expected one such as '[8, 4, 4]'");
         s = skip_blanks(s);
         if (*s != ',' && (*s != 'x' || bracket)) continue;
         /* A separator separates: behind it there is a number. */
@@ -148,7 +152,7 @@ bool field_pair_list_set(const struct field *f, void *base, const char *text, st
 }
 
 /* The next entry of a list of quantities, up to a comma; without commas a blank before a digit or
- * sign separates, so that "1 2 m/s" is two numbers and one unit. */
+ * sign separates, so that "1 2 m/s" is two numbers and one unit. NULL: too long for `entry`. */
 static const char *next_entry(const char *s, bool commas, char entry[ENTRY_LENGTH])
 {
     int n = 0;
@@ -156,7 +160,9 @@ static const char *next_entry(const char *s, bool commas, char entry[ENTRY_LENGT
     while (*s != '\0' && *s != ',') {
         const char *next = skip_blanks(s);
         if (!commas && n > 0 && next > s && strchr("+-.0123456789", *next) != NULL) break;
+        /* blanks at the end need no room; a number that has none is no number of fewer digits */
         if (n < ENTRY_LENGTH - 1) entry[n++] = *s;
+        else if (!isspace((unsigned char)*s)) return NULL;
         s++;
     }
     while (n > 0 && isspace((unsigned char)entry[n - 1])) n--;
@@ -177,7 +183,8 @@ static bool open_list(const char *text, char *inner, int capacity, char unit[ENT
     if (end - s >= capacity) return field_refuse(why, size, "too long a list");
     memcpy(inner, s, (size_t)(end - s));
     inner[end - s] = '\0';
-    snprintf(unit, ENTRY_LENGTH, "%s", bracket ? skip_blanks(end + 1) : "");
+    if (snprintf(unit, ENTRY_LENGTH, "%s", bracket ? skip_blanks(end + 1) : "") >= ENTRY_LENGTH)
+        return field_refuse(why, size, "too long a unit");
     return true;
 }
 
@@ -200,12 +207,16 @@ bool field_reals_set(const struct field *f, void *base, const char *text, char *
     for (const char *s = skip_blanks(inner); *s != '\0'; s = skip_blanks(s)) {
         if (n == f->capacity || n == 16) return field_refuse(why, size, "too many entries");
         s = next_entry(s, commas, entry[n++]);
+        if (s == NULL) return field_refuse(why, size, "too long a number");
     }
     /* Vectors of three need all three numbers. */
     if (n < f->at_least) {
         snprintf(why, (size_t)size, "%d numbers; expected %d", n, f->at_least);
         return false;
     }
+    /* Behind a bracket there is a unit or nothing, even where nobody needs it. */
+    snprintf(quantity, sizeof quantity, "1 %.63s", unit);
+    if (unit[0] != '\0' && !units_parse(quantity, f->unit, &value[0], why, size)) return false;
     /* No unit behind a bracket: that of the last entry holds for those that have none. */
     if (unit[0] == '\0') snprintf(unit, sizeof unit, "%s", unit_of(entry[n - 1]));
     for (int i = 0; i < n; i++) {

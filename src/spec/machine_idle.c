@@ -231,6 +231,8 @@ const char *machine_idle_at_loggp(const struct run_spec *r)
 
 const char *machine_idle_unless_background(const struct run_spec *r)
 {
+    const char *why = machine_idle_at_loggp(r);
+    if (why != NULL) return why;
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
 }
 

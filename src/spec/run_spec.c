@@ -23,8 +23,9 @@ bool run_spec_is_random(const struct run_spec *r)
     bool tie = topology_has(f, TOPOLOGY_RINGS) && m->topology.tie == TIE_RANDOM;
     bool routed = routing_rule_chance(m->network.routing);
     bool order = kernel_spec_has(&r->kernel, PROGRAM_RANDOM);
-    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || routed ||
-           order;
+    /* Level 'loggp' has no links that other jobs take. */
+    bool others = m->noise.background_load > 0 && m->network.level != LEVEL_LOGGP;
+    return m->noise.compute_cv > 0 || others || valiant || tie || routed || order;
 }
 
 /* Repetitions of one run draw different numbers; the same repetition always the same ones. */
