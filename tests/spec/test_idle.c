@@ -115,6 +115,8 @@ static void settings_of_topologies(void **state)
         {FAMILY("fat-tree"), "machine.topology.bundle", "bundles"},
         {FAMILY("folded-clos"), "machine.topology.up", NULL},
         {FAMILY("fat-tree"), "machine.topology.up", "folded Clos"},
+        {FAMILY("hyperx"), "machine.topology.up", "folded Clos"},
+        {FAMILY("hyperx"), "machine.topology.links", "from the file"},
         {FAMILY("express-mesh"), "machine.topology.express", NULL},
         {FAMILY("express-torus"), "machine.topology.express", NULL},
         {FAMILY("twisted-torus"), "machine.topology.express", "express cubes"},
@@ -203,6 +205,8 @@ static void settings_of_message_software(void **state)
         {SEGMENTS "[{from: 0 B}]", "machine.software.rendezvous.latency", "no segment"},
         {SEGMENTS "[{from: 0 B}, {from: 9 B, protocol: rendezvous}]",
          "machine.software.rendezvous.latency", NULL},
+        {SEGMENTS "[{from: 0 B, protocol: synchronous}]", "machine.software.rendezvous.latency",
+         NULL},
         {SEGMENTS "[{from: 0 B, protocol: synchronous, rendezvous.latency: 0 s}]",
          "machine.software.rendezvous.latency", "no segment"},
         /* channels within a node need several processors, then a bandwidth */
