@@ -100,8 +100,8 @@ static bool rates_of(struct load_options *o, const char *text, struct arena *a, 
     }
     qsort(o->rate, (size_t)o->nrate, sizeof *o->rate, by_size);
     for (int i = 0; i < o->nrate; i++)
-        if (i == 0 || o->rate[i] > o->rate[kept - 1]) o->rate[kept++] = o->rate[i];
-    /* a load that was named twice is one point */
+        if (i == 0 || o->rate[i] > o->rate[kept - 1] * (1 + 1e-9)) o->rate[kept++] = o->rate[i];
+    /* a load that was named twice is one point, also where a range has rounded it */
     o->nrate = kept;
     return true;
 }

@@ -43,6 +43,8 @@ static int compare_cells(const struct making *m, int column, int a, int b)
     if (!m->sheet->column[column].number) return 0;
     const double x = plot_sheet_at(m->sheet, a, column)->number,
                  y = plot_sheet_at(m->sheet, b, column)->number;
+    /* No value is a place of its own, before all numbers. */
+    if (isnan(x) || isnan(y)) return !isnan(x) - !isnan(y);
     return (x > y) - (x < y);
 }
 
@@ -270,6 +272,16 @@ static bool repetitions(const struct making *m, const struct placed *at, int n)
     return hash >= 0;
 }
 
+/* Whether `title` is one of the titles in "a, b, c": "rate" is not in "hop_rate". */
+static bool is_told(const char *all, const char *title)
+{
+    const size_t n = strlen(title);
+    for (const char *s = all; s != NULL && (s = strstr(s, title)) != NULL; s++)
+        if ((s == all || (s[-1] == ' ' && s[-2] == ',')) && (s[n] == '\0' || s[n] == ','))
+            return true;
+    return false;
+}
+
 /* The columns in which rows of one point differ, each told once. */
 static void tell_difference(struct making *m, const struct placed *at, int n)
 {
@@ -280,11 +292,8 @@ static void tell_difference(struct making *m, const struct placed *at, int n)
         for (int i = 1; i < n; i++)
             differs = differs || strcmp(text_at(m, at[0].row, c), text_at(m, at[i].row, c)) != 0;
         if (!differs || is_used(m->axes, c) || (m->sheet->runs && !column->trait)) continue;
-        struct text word = {0};
-        text_add(&word, "%s%s", out->length > 0 ? ", " : "", column->title);
-        if (out->s == NULL || strstr(out->s, column->title) == NULL)
-            text_add(out, "%s", word.s);
-        text_free(&word);
+        if (!is_told(out->s, column->title))
+            text_add(out, "%s%s", out->length > 0 ? ", " : "", column->title);
     }
 }
 

@@ -416,14 +416,15 @@ int plot_sheet_find(const struct plot_sheet *sheet, const char *key, struct err 
 {
     const char *name[MOST_NAMES];
     const char *word = sheet->runs ? looked_up(alias, sizeof alias / sizeof *alias, key) : key;
-    int found = -1;
-    for (int i = 0; i < sheet->ncolumn && i < MOST_NAMES; i++) {
+    int found = -1, told = 0;
+    for (int i = 0; i < sheet->ncolumn; i++) {
         if (strcmp(sheet->column[i].key, word) == 0) return i;
         if (sheet->runs && found < 0 && ends_in(sheet->column[i].key, word)) found = i;
-        name[i] = sheet->column[i].key;
+        /* A query may have more columns than anybody looks for by a nearly right name. */
+        if (told < MOST_NAMES) name[told++] = sheet->column[i].key;
     }
     if (found >= 0) return found;
-    const char *near = text_nearest(key, name, sheet->ncolumn);
+    const char *near = text_nearest(key, name, told);
     err_set(e, ERR_USAGE, "'%.80s' is no column of the query%s%s%s", key,
             near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
             near != NULL ? "'?" : "");

@@ -93,7 +93,8 @@ static bool fulfils(const struct plot_cell *cell, const struct plot_column *colu
     switch (c->operator) {
     case PLOT_EQUAL: return is_one_of(cell, column, c->value);
     case PLOT_NOT_EQUAL: return !is_one_of(cell, column, c->value);
-    case PLOT_LIKE: return fnmatch(c->value, cell->text, 0) == 0;
+    /* "*" is any value, but not none */
+    case PLOT_LIKE: return cell->text[0] != '\0' && fnmatch(c->value, cell->text, 0) == 0;
     case PLOT_LESS: return cell->number < number;
     case PLOT_AT_MOST: return cell->number < number || same(cell->number, number);
     case PLOT_MORE: return cell->number > number;

@@ -146,8 +146,7 @@ static void quaternions_are_uniform(void **state)
         const double up = 1 - 2 * (q[0] * q[0] + q[1] * q[1]); /* z of the turned z axis */
         z += up / DRAWS, zz += up * up / DRAWS;
     }
-    for (int k = 0; k < 4; k++)
-        assert_true(fabs(mean[k]) < 0.02 && fabs(square[k] - 0.25) < 0.01);
+    for (int k = 0; k < 4; k++) assert_true(fabs(mean[k]) < 0.02 && fabs(square[k] - 0.25) < 0.01);
     assert_true(fabs(z) < 0.02 && fabs(zz - 1 / 3.0) < 0.01);
 }
 

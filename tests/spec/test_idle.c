@@ -183,8 +183,8 @@ static void settings_of_message_software(void **state)
         /* a list takes the place of the limits ... */
         {SEGMENTS "[{from: 0 B}]", "machine.software.eager.limit", "by size"},
         {SEGMENTS "[{from: 0 B}]", "machine.software.eager.copy", "by size"},
-        {SEGMENTS "[{from: 0 B}];machine.software.short.limit=8 B",
-         "machine.software.short.saving", "by size"},
+        {SEGMENTS "[{from: 0 B}];machine.software.short.limit=8 B", "machine.software.short.saving",
+         "by size"},
         /* ... and of a number only where every segment gives it */
         {SEGMENTS "[{from: 0 B, gap: 1 us}]", "machine.software.gap", "every segment"},
         {SEGMENTS "[{from: 0 B, gap: 1 us}]", "machine.software.gap_per_byte", NULL},
@@ -198,8 +198,7 @@ static void settings_of_message_software(void **state)
         {SEGMENTS "[{from: 0 B, send.overhead: 0 s}]", "machine.software.recv.overhead", NULL},
         {SEGMENTS "[{from: 0 B, recv.overhead: 0 s}]", "machine.software.recv.overhead",
          "every segment"},
-        {SEGMENTS "[{from: 0 B, recv.copy: 0 s/B}]", "machine.software.recv.copy",
-         "every segment"},
+        {SEGMENTS "[{from: 0 B, recv.copy: 0 s/B}]", "machine.software.recv.copy", "every segment"},
         {SEGMENTS "[{from: 0 B, gap_per_byte: 0 s/B}]", "machine.software.gap_per_byte",
          "every segment"},
         {SEGMENTS "[{from: 0 B}]", "machine.software.rendezvous.latency", "no segment"},
@@ -285,21 +284,23 @@ static void the_form_of_composites(void **state)
     static const struct idle_case cases[] = {
         {"", "kernel.composites_incoming", NULL},
         {MODEL("comb"), "kernel.composites_incoming", "always take incoming"},
-        {NAME("forward") ";kernel.formulation=direct;model.rate=0 rad/s", "kernel.composites_incoming",
-         "nothing moves, so the direct"},
+        {NAME("forward") ";kernel.formulation=direct;model.rate=0 rad/s",
+         "kernel.composites_incoming", "nothing moves, so the direct"},
         {NAME("forward") ";kernel.formulation=direct", "kernel.composites_incoming", NULL},
-        {NAME("dynamics") ";kernel.formulation=direct;model.rate=0 rad/s", "kernel.composites_incoming",
-         NULL},
+        {NAME("dynamics") ";kernel.formulation=direct;model.rate=0 rad/s",
+         "kernel.composites_incoming", NULL},
         {NAME("forward") ";kernel.formulation=direct;model.rate=0 rad/s;kernel.steps=1",
          "kernel.composites_incoming", NULL},
         {NAME("forward") ";kernel.formulation=direct;model.rate=0 rad/s;kernel.outer_refinements=1",
          "kernel.composites_incoming", NULL},
-        {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s", "kernel.composites_incoming",
-         NULL}, /* gravity */
+        {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s",
+         "kernel.composites_incoming", NULL}, /* gravity */
         {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s;model.gravity=[0, 0, 0] "
-                         "m/s^2", "kernel.composites_incoming", "nothing weighs"},
+                         "m/s^2",
+         "kernel.composites_incoming", "nothing weighs"},
         {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s;model.gravity=[0, 0, 0] "
-                         "m/s^2;model.external_force=1 N", "kernel.composites_incoming", NULL},
+                         "m/s^2;model.external_force=1 N",
+         "kernel.composites_incoming", NULL},
         {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s;model.gravity=[0, 0, 0] "
                          "m/s^2;model.base_acceleration.linear=[0, 0, 1] m/s^2",
          "kernel.composites_incoming", "nothing weighs"},
@@ -307,7 +308,8 @@ static void the_form_of_composites(void **state)
                          "m/s^2;model.base_acceleration.linear=[0, 0, 1] m/s^2;model.base=moving",
          "kernel.composites_incoming", NULL},
         {NAME("forward") ";kernel.formulation=paper;model.rate=0 rad/s;model.gravity=[0, 0, 0] "
-                         "m/s^2;model.generator=vector", "kernel.composites_incoming", NULL},
+                         "m/s^2;model.generator=vector",
+         "kernel.composites_incoming", NULL},
     };
     CHECK_CASES(cases);
 }
@@ -359,9 +361,9 @@ static void settings_of_models(void **state)
 static void own_programs(void **state)
 {
     (void)state;
-    static const char *const idle[] = {"kernel.solver",    "kernel.formulation", "kernel.message",
-                                       "kernel.repeat",    "kernel.root",        "kernel.algorithm",
-                                       "kernel.precision", "model.n",            "model.gravity"};
+    static const char *const idle[] = {
+        "kernel.solver",    "kernel.formulation", "kernel.message", "kernel.repeat", "kernel.root",
+        "kernel.algorithm", "kernel.precision",   "model.n",        "model.gravity"};
     struct run_spec run;
     make_run(&run, NAME("allreduce") ";program.file=x.c");
     run.kernel.own = true;

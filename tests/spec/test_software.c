@@ -35,13 +35,13 @@ static void limits_make_one_to_three_segments(void **state)
         int n;
         int64_t from[3];
     } cases[] = {
-        {0, -1, 1, {0}},           /* neither */
-        {0, 0, 2, {0, 1}},         /* only empty messages are eager */
-        {1, -1, 2, {0, 2}},        /* short ones alone */
-        {0, 4096, 2, {0, 4097}},   /* eager ones alone */
+        {0, -1, 1, {0}},         /* neither */
+        {0, 0, 2, {0, 1}},       /* only empty messages are eager */
+        {1, -1, 2, {0, 2}},      /* short ones alone */
+        {0, 4096, 2, {0, 4097}}, /* eager ones alone */
         {64, 4096, 3, {0, 65, 4097}},
         {4096, 64, 3, {0, 65, 4097}}, /* short ones that shake hands */
-        {64, 64, 2, {0, 65}},      /* one step where both limits agree */
+        {64, 64, 2, {0, 65}},         /* one step where both limits agree */
         {64, 63, 3, {0, 64, 65}},
         {1, 0, 3, {0, 1, 2}},
     };
@@ -61,7 +61,7 @@ static void check_size(const struct software_spec *soft, int64_t bytes)
     const struct software_segment *s = software_segment_of(list, n, bytes);
     bool is_short = bytes <= soft->short_bytes && soft->short_bytes > 0;
     bool eager = soft->eager_bytes == -1 || bytes <= soft->eager_bytes;
-    double saving = !is_short ? 0
+    double saving = !is_short                                  ? 0
                     : soft->short_saving > soft->send_overhead ? soft->send_overhead
                                                                : soft->short_saving;
     assert_true(s->from <= bytes && (s == &list[n - 1] || s[1].from > bytes));

@@ -78,8 +78,9 @@ static void lists_print_in_one_form(void **state)
         {"machine.software.segments", "[{from: 0 B}]", "[{from: 0 B}]"},
         {"machine.software.segments", " [ {\n gap : 1 us ,\n from: 0 B } ] ",
          "[{from: 0 B, gap: 1 us}]"},
-        {"machine.software.segments", "[{from: 0 B, protocol: eager}, {from: 1 B, protocol: "
-                                      "rendezvous, rendezvous.latency: 2 us}]",
+        {"machine.software.segments",
+         "[{from: 0 B, protocol: eager}, {from: 1 B, protocol: "
+         "rendezvous, rendezvous.latency: 2 us}]",
          "[{from: 0 B}, {from: 1 B, protocol: rendezvous, rendezvous.latency: 2 us}]"},
         {"machine.software.segments", "[{from: 0 B, send.overhead: 0 s, send.copy: 0 s/B}]",
          "[{from: 0 B, send.overhead: 0 s, send.copy: 0 s/B}]"},
@@ -134,8 +135,10 @@ static void wrong_lists_are_refused_whole(void **state)
         {"model.gravity",
          "[0, 0, 1.00000000000000000000000000000000000000000000000000000000000000000e3] m/s^2",
          "too long"},
-        {"model.gravity", "[0, 0, 1] m/s^2                                                        "
-                          "        rubbish", ""},
+        {"model.gravity",
+         "[0, 0, 1] m/s^2                                                        "
+         "        rubbish",
+         ""},
         {"machine.software.eager.limit", "Unlimited", ""},
         {"machine.network.flit", "unlimited", ""},
         {"machine.network.flit", "-1 B", "negative"},
@@ -357,9 +360,9 @@ static void parameters_of_programs(void **state)
     static const struct {
         const char *name, *text, *canonical; /* NULL: refused */
     } cases[] = {
-        {"size", "1", "1"},       {"size", "0", NULL},          {"size", "1000001", NULL},
-        {"size", "4 KiB", NULL},  {"block", "8192 B", "8 KiB"}, {"block", "unlimited", NULL},
-        {"pause", "1 s", "1 s"},  {"pause", "1.5 s", NULL},     {"check", "yes", "true"},
+        {"size", "1", "1"},        {"size", "0", NULL},          {"size", "1000001", NULL},
+        {"size", "4 KiB", NULL},   {"block", "8192 B", "8 KiB"}, {"block", "unlimited", NULL},
+        {"pause", "1 s", "1 s"},   {"pause", "1.5 s", NULL},     {"check", "yes", "true"},
         {"way", "gauss", "gauss"}, {"way", "gaus", NULL},
     };
     char why[200];
