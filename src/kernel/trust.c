@@ -30,7 +30,7 @@ double trust_residual(const struct program_run *r)
     double residual = 0, scale = 0;
     if (!of) return worst(x, r->spec.nrank);
     for (int i = 0; i < r->spec.nrank; i++) {
-        if (isnan(x[i])) return x[i];
+        if (isnan(x[i]) || isnan(of[i])) return NAN;
         /* A rank's residual is relative to its own scale; times that scale it is absolute and can
          * be compared. */
         residual = fmax(residual, x[i] * of[i]);

@@ -29,8 +29,8 @@ bool plot_where_parse(struct plot_condition *c, const char *text, struct arena *
 
 /* plot_where_keep: drop the rows of the sheet that do not fulfil all (n) conditions. Numbers are
  * compared as numbers, with units where the column has one; a row without a value fulfils only !=
- * and "KEY=". Returns false with ERR_USAGE (unknown key, wrong unit) or ERR_NO_INPUT (no row is left: which
- * values there are). */
+ * and "KEY=". Returns false with ERR_USAGE (unknown key, wrong unit) or ERR_NO_INPUT (no row is
+ * left: which values there are). */
 bool plot_where_keep(struct plot_sheet *sheet, int n, const struct plot_condition *c,
                      struct err *e);
 

@@ -417,51 +417,53 @@ static void rates_are_rising_and_each_once(void **state)
     assert_true(o.rate[0] == 0.2 && fabs(o.rate[1] - 0.21) < 1e-12 && o.rate[19] == 0.39);
 }
 
+static const struct {
+    const char *words, *told;
+} wrong_loads[] = {
+    {"--rates 0", "above 0 and up to 1"},
+    {"--rates 1.1", "--rates: 1.1"},
+    {"--rates -0.5", "above 0"},
+    {"--rates nan", "'nan' is not a number"},
+    {"--rates fast", "'fast' is not a number"},
+    {"--rates 0.5x", "is not a number"},
+    {"--rates 0.1,,0.2", "has an empty entry"},
+    {"--rates 0.1,", "has an empty entry"},
+    {"--rates=", "has an empty entry"},
+    {"--rates 0.5:0.1", "expected LOW:HIGH"},
+    {"--rates 0.1:0.5:0", "expected LOW:HIGH"},
+    {"--rates 0.1:0.5:-1", "expected LOW:HIGH"},
+    {"--rates 0.1:0.5:0.1:2", "expected LOW:HIGH"},
+    {"--rates :", "expected LOW:HIGH"},
+    {"--rates 0:0.5:0.1", "above 0"},
+    {"--rates 0.1:1:1e-9", "more than 256 loads"},
+    {"--rates 0.5:1.5:0.5", "above 0 and up to 1"},
+    {"--size 64", "no unit"},
+    {"--size 0_B", "1 B to 1 GiB"},
+    {"--size 1.5_B", "1 B to 1 GiB"},
+    {"--size 2_GiB", "1 B to 1 GiB"},
+    {"--within 0", "an error such as 2%"},
+    {"--within 1", "an error such as 2%"},
+    {"--within 100%", "an error such as 2%"},
+    {"--within 2%%", "an error such as 2%"},
+    {"--within few", "an error such as 2%"},
+    {"--seed -1", "from 0 to 1000000000"},
+    {"--seed 1.5", "expected a whole number"},
+    {"--seed 99999999999999999999", "expected a whole number"},
+    {"--messages 0", "expected a whole number"},
+    {"--traffic uniform,", "--traffic: 'uniform,' has an empty entry"},
+    {"--routing=", "has an empty entry"},
+};
+
 static void wrong_loads_are_refused(void **state)
 {
     (void)state;
-    static const struct {
-        const char *words, *told;
-    } cases[] = {
-        {"--rates 0", "above 0 and up to 1"},
-        {"--rates 1.1", "--rates: 1.1"},
-        {"--rates -0.5", "above 0"},
-        {"--rates nan", "'nan' is not a number"},
-        {"--rates fast", "'fast' is not a number"},
-        {"--rates 0.5x", "is not a number"},
-        {"--rates 0.1,,0.2", "has an empty entry"},
-        {"--rates 0.1,", "has an empty entry"},
-        {"--rates=", "has an empty entry"},
-        {"--rates 0.5:0.1", "expected LOW:HIGH"},
-        {"--rates 0.1:0.5:0", "expected LOW:HIGH"},
-        {"--rates 0.1:0.5:-1", "expected LOW:HIGH"},
-        {"--rates 0.1:0.5:0.1:2", "expected LOW:HIGH"},
-        {"--rates :", "expected LOW:HIGH"},
-        {"--rates 0:0.5:0.1", "above 0"},
-        {"--rates 0.1:1:1e-9", "more than 256 loads"},
-        {"--rates 0.5:1.5:0.5", "above 0 and up to 1"},
-        {"--size 64", "no unit"},
-        {"--size 0_B", "1 B to 1 GiB"},
-        {"--size 1.5_B", "1 B to 1 GiB"},
-        {"--size 2_GiB", "1 B to 1 GiB"},
-        {"--within 0", "an error such as 2%"},
-        {"--within 1", "an error such as 2%"},
-        {"--within 100%", "an error such as 2%"},
-        {"--within 2%%", "an error such as 2%"},
-        {"--within few", "an error such as 2%"},
-        {"--seed -1", "from 0 to 1000000000"},
-        {"--seed 1.5", "expected a whole number"},
-        {"--seed 99999999999999999999", "expected a whole number"},
-        {"--messages 0", "expected a whole number"},
-        {"--traffic uniform,", "--traffic: 'uniform,' has an empty entry"},
-        {"--routing=", "has an empty entry"},
-    };
     struct load_options o;
     struct err e;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        if (take_load(cases[i].words, &o, &e)) fail_msg("%s is taken", cases[i].words);
+    for (size_t i = 0; i < sizeof wrong_loads / sizeof *wrong_loads; i++) {
+        if (take_load(wrong_loads[i].words, &o, &e)) fail_msg("%s is taken", wrong_loads[i].words);
         assert_int_equal(e.kind, ERR_USAGE);
-        if (strstr(e.text, cases[i].told) == NULL) fail_msg("%s: %s", cases[i].words, e.text);
+        if (strstr(e.text, wrong_loads[i].told) == NULL)
+            fail_msg("%s: %s", wrong_loads[i].words, e.text);
     }
     char words[1000];
     snprintf(words, sizeof words, "--messages %d", LOAD_LEAST_MESSAGES);

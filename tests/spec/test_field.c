@@ -91,6 +91,11 @@ static void every_member_of_a_run_has_one_field(void **state)
     memset(covered + offsetof(struct run_spec, refused_kind), 1, sizeof(int));
     /* a study's own question, which no file asks: shares that are made even */
     memset(covered + offsetof(struct run_spec, record.balance), 1, sizeof(void *));
+    /* of no meaning: nobody shares the first cache, and the memory has no capacity */
+    memset(covered + offsetof(struct run_spec, machine.node.level[NODE_L1].shared), 1,
+           sizeof(double));
+    memset(covered + offsetof(struct run_spec, machine.node.level[NODE_MEMORY].bytes), 1,
+           sizeof(int64_t));
     /* no setting: results are the same */
     memset(covered + offsetof(struct run_spec, keep), 1, sizeof(unsigned));
     for (size_t b = 0; b < sizeof covered; b++) {

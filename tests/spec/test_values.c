@@ -100,66 +100,67 @@ static void lists_print_in_one_form(void **state)
     }
 }
 
+static const struct {
+    const char *key, *text, *expected;
+} wrong_lists[] = {
+    {"machine.topology.dims", "", "empty list"},
+    {"machine.topology.dims", "8x", "missing at the end"},
+    {"machine.topology.dims", "[8,]", "missing at the end"},
+    {"machine.topology.dims", "8,,4", "not a list of whole numbers"},
+    {"machine.topology.dims", "[8]]", "brackets do not match"},
+    {"machine.topology.dims", "8]", "brackets do not match"},
+    {"machine.topology.dims", "[8x4]", "not a list of whole numbers"},
+    {"machine.topology.dims", "8.5x4", "not a list of whole numbers"},
+    {"machine.topology.dims", "8+4", "not a list of whole numbers"},
+    {"machine.topology.dims", "16777217", "out of range"},
+    {"machine.topology.dims", "99999999999999999999", "out of range"},
+    {"machine.topology.dims", "4294967297", "out of range"},
+    {"machine.topology.links", "[0, 1]", "not a list of pairs"},
+    {"machine.topology.links", "[[0, 1, 2]]", "not a list of pairs"},
+    {"machine.topology.links", "[[0, 1],,[1, 2]]", "not a list of pairs"},
+    {"machine.topology.links", "[[0, 1]] 2", "brackets do not match"},
+    {"machine.topology.links", "[[0, -1]]", "out of range"},
+    {"machine.topology.links", "", "not a list of pairs"},
+    {"machine.topology.dim_latency", "[]", "0 numbers; expected 1"},
+    {"machine.topology.dim_latency", "[1,2,3,4,5,6,7,8,9] us", "too many entries"},
+    {"machine.topology.dim_latency", "[2 s]", "out of range"},
+    {"machine.topology.dim_latency", "[1 us] us]", ""},
+    {"model.gravity", "[0, , 1] m/s^2", ""},
+    {"model.gravity", "[0, 0, 1] kg", "m/s^2"},
+    {"model.gravity", "[0, 0, nan] m/s^2", "finite"},
+    /* a number of more digits than are read is refused, not cut to another one */
+    {"model.gravity",
+     "[0, 0, 1.00000000000000000000000000000000000000000000000000000000000000000e3] m/s^2",
+     "too long"},
+    {"model.gravity",
+     "[0, 0, 1] m/s^2                                                        "
+     "        rubbish",
+     ""},
+    {"machine.software.eager.limit", "Unlimited", ""},
+    {"machine.network.flit", "unlimited", ""},
+    {"machine.network.flit", "-1 B", "negative"},
+    {"machine.network.flit", "0 B", "out of range"},
+    {"machine.network.flit", "1048577 B", "out of range"},
+    {"seed", "", "not a seed"},
+    {"seed", " 1", "not a seed"},
+    {"seed", "+1", "not a seed"},
+    {"seed", "1 ", "not a seed"},
+    {"record.links", "True", "'true' or 'false'"},
+    {"ranks", "16 777 216", "not a whole number"},
+    {"ranks", "16777217", "out of range"},
+    {"scenario", "a\tb", "control characters"},
+    {"machine.software.collectives", "reduce no-such-way", ""},
+};
+
 static void wrong_lists_are_refused_whole(void **state)
 {
     (void)state;
-    static const struct {
-        const char *key, *text, *expected;
-    } cases[] = {
-        {"machine.topology.dims", "", "empty list"},
-        {"machine.topology.dims", "8x", "missing at the end"},
-        {"machine.topology.dims", "[8,]", "missing at the end"},
-        {"machine.topology.dims", "8,,4", "not a list of whole numbers"},
-        {"machine.topology.dims", "[8]]", "brackets do not match"},
-        {"machine.topology.dims", "8]", "brackets do not match"},
-        {"machine.topology.dims", "[8x4]", "not a list of whole numbers"},
-        {"machine.topology.dims", "8.5x4", "not a list of whole numbers"},
-        {"machine.topology.dims", "8+4", "not a list of whole numbers"},
-        {"machine.topology.dims", "16777217", "out of range"},
-        {"machine.topology.dims", "99999999999999999999", "out of range"},
-        {"machine.topology.dims", "4294967297", "out of range"},
-        {"machine.topology.links", "[0, 1]", "not a list of pairs"},
-        {"machine.topology.links", "[[0, 1, 2]]", "not a list of pairs"},
-        {"machine.topology.links", "[[0, 1],,[1, 2]]", "not a list of pairs"},
-        {"machine.topology.links", "[[0, 1]] 2", "brackets do not match"},
-        {"machine.topology.links", "[[0, -1]]", "out of range"},
-        {"machine.topology.links", "", "not a list of pairs"},
-        {"machine.topology.dim_latency", "[]", "0 numbers; expected 1"},
-        {"machine.topology.dim_latency", "[1,2,3,4,5,6,7,8,9] us", "too many entries"},
-        {"machine.topology.dim_latency", "[2 s]", "out of range"},
-        {"machine.topology.dim_latency", "[1 us] us]", ""},
-        {"model.gravity", "[0, , 1] m/s^2", ""},
-        {"model.gravity", "[0, 0, 1] kg", "m/s^2"},
-        {"model.gravity", "[0, 0, nan] m/s^2", "finite"},
-        /* a number of more digits than are read is refused, not cut to another one */
-        {"model.gravity",
-         "[0, 0, 1.00000000000000000000000000000000000000000000000000000000000000000e3] m/s^2",
-         "too long"},
-        {"model.gravity",
-         "[0, 0, 1] m/s^2                                                        "
-         "        rubbish",
-         ""},
-        {"machine.software.eager.limit", "Unlimited", ""},
-        {"machine.network.flit", "unlimited", ""},
-        {"machine.network.flit", "-1 B", "negative"},
-        {"machine.network.flit", "0 B", "out of range"},
-        {"machine.network.flit", "1048577 B", "out of range"},
-        {"seed", "", "not a seed"},
-        {"seed", " 1", "not a seed"},
-        {"seed", "+1", "not a seed"},
-        {"seed", "1 ", "not a seed"},
-        {"record.links", "True", "'true' or 'false'"},
-        {"ranks", "16 777 216", "not a whole number"},
-        {"ranks", "16777217", "out of range"},
-        {"scenario", "a\tb", "control characters"},
-        {"machine.software.collectives", "reduce no-such-way", ""},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < sizeof wrong_lists / sizeof *wrong_lists; i++) {
         char printed[512], why[256];
-        if (take(cases[i].key, cases[i].text, printed, sizeof printed, why))
-            fail_msg("%s takes '%s' as %s", cases[i].key, cases[i].text, printed);
-        if (strstr(why, cases[i].expected) == NULL || why[0] == '\0')
-            fail_msg("%s = '%s': %s", cases[i].key, cases[i].text, why);
+        if (take(wrong_lists[i].key, wrong_lists[i].text, printed, sizeof printed, why))
+            fail_msg("%s takes '%s' as %s", wrong_lists[i].key, wrong_lists[i].text, printed);
+        if (strstr(why, wrong_lists[i].expected) == NULL || why[0] == '\0')
+            fail_msg("%s = '%s': %s", wrong_lists[i].key, wrong_lists[i].text, why);
     }
 }
 
