@@ -94,6 +94,8 @@ static void every_member_of_a_run_has_one_field(void **state)
     /* of no meaning: nobody shares the first cache, and the memory has no capacity */
     memset(covered + offsetof(struct run_spec, machine.node.level[NODE_L1].shared), 1,
            sizeof(double));
+    memset(covered + offsetof(struct run_spec, machine.node.level[NODE_L1].processors), 1,
+           sizeof(int));
     memset(covered + offsetof(struct run_spec, machine.node.level[NODE_MEMORY].bytes), 1,
            sizeof(int64_t));
     /* no setting: results are the same */
