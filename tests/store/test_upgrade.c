@@ -341,7 +341,8 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
     snprintf(runs, sizeof runs, "%s", value(f->path, rows_of_runs));
     snprintf(count, sizeof count, "%s", value(f->path, count_of_rows));
     double once = 0.05; /* follows how long an upgrade takes here */
-    for (int i = 0; i < 60; i++) {
+    /* Where others take the processor, moments are found more slowly. */
+    for (int i = 0; i < 60 || (i < 600 && (old <= 10 || new <= 10)); i++) {
         make_old(f, 4);
         whole += upgrade_and_kill(f, random_uniform(&random, 0, once));
         const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "8") == 0;
@@ -354,7 +355,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
         /* The old one beside is whole or not there. */
         if (access(f->kept, F_OK) == 0) is(f->kept, rows_of_runs, runs);
         else assert_false(upgraded);
-        if (old > new + 4) once *= 1.1;
+        if (old > new + 4) once *= 1.2;
         if (new > old + 4) once *= 0.9;
         /* The next one who comes finishes it. */
         if (i % 8) continue;
