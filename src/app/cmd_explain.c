@@ -155,6 +155,29 @@ static void print_nodes(const struct plan *p, const struct run_estimate *r)
     }
 }
 
+/* The jobs of the first point; those of others differ by what is swept. */
+static void print_jobs(const struct plan *p)
+{
+    const struct job_set *set = p->nrun > 0 ? p->run[0].jobs : NULL;
+    if (!set) return;
+    printf("\n%d jobs on one machine, each run tells of one of them:\n", set->n);
+    for (int i = 0; i < set->n; i++) {
+        /* As scenarios write it: what the file says can be found again. */
+        const struct run_spec *s = set->job[i];
+        struct text place = choice_of(s, "machine.placement.kind"),
+                    start = choice_of(s, "job.start");
+        printf("  %-16s %-12s P = %-7d from %-8s placement %s\n", s->job.name, s->kernel.name,
+               s->nrank, start.s, place.s);
+        text_free(&place);
+        text_free(&start);
+    }
+    /* In the order of the runs above. */
+    printf("%-16s %s\n", "  job", "beside");
+    for (int i = 0; i < p->nrun && p->run[i].jobs->job == set->job; i++)
+        printf("  %-16s %s\n", p->run[i].job.name,
+               p->run[i].job.beside[0] ? p->run[i].job.beside : "(alone)");
+}
+
 /* For people: the table, what is not decided yet, units, cost, then omissions and idle settings. */
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
@@ -169,6 +192,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
         add(&t, &r[i]);
         open_level = open_level || p->run[i].machine.network.level == LEVEL_AUTO_TOLERANCE;
     }
+    print_jobs(p);
     /* Explaining settles nothing: that takes a database and seconds of measuring. */
     if (open_level)
         printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the "

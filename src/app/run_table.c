@@ -132,6 +132,7 @@ static bool ends_in(const char *key, const char *name)
 static const char *short_name(const struct plan *p, int at)
 {
     const char *key = p->swept[at].key, *name = key + strlen(key);
+    if (strcmp(key, "job.name") == 0) return "job";
     while (name > key) {
         do name--;
         /* One word more to the left each time. */

@@ -175,6 +175,7 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
         software_eager_most(&m->software) == INT64_MAX && t->spec->processors_per_node == 1;
     /* Zero, and so no memory of the computer until something passes: a machine of a few bytes of
      * text has 10^8 links. */
+    n->njob = 1;
     if (want_links) n->load = TAKE(a, n->nresource, struct link_load);
     return n->type->create(n, e) ? n : NULL;
 }

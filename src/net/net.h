@@ -26,6 +26,10 @@ struct net;
  * NET_LANE_START. */
 enum { NET_LANE_FREE = 16, NET_LANE_START = 32, NET_LANE_HEAD = 48, NET_LANE_ARBITRATE = 64 };
 
+/* Parts of a message's number: its job's from this bit on, then 24 bits of its sender, then how
+ * many that had sent before. */
+enum { NET_ID_JOB = 56, NET_ID_RANKS = 0xffffff };
+
 /* One message on its way; embedded in the mailbox's own struct, which stays in place until
  * deliver. */
 struct net_message {
@@ -129,11 +133,15 @@ bool net_ask_others(struct net *n, net_others_fn *others, void *context);
  * bytes) then names the cycle of links. */
 bool net_deadlock(const struct net *n, char *text, int size);
 
-/* net_links: the loads recorded so far, as a list of *nlink entries in `a`: injection ports, links,
- * ejection ports. Of a network with more than NET_LINKS_WHOLE of them only those that something
- * passed. NULL and 0 when not recorded. */
+/* net_count_jobs: messages of different jobs (NET_ID_JOB) are counted apart, for net_links. Call it
+ * before any message is sent. */
+void net_count_jobs(struct net *n, int njob);
+
+/* net_links: the loads recorded so far of messages of `job`, as a list of *nlink entries in `a`:
+ * injection ports, links, ejection ports. Of a network with more than NET_LINKS_WHOLE of them only
+ * those that something passed. NULL and 0 when not recorded. */
 enum { NET_LINKS_WHOLE = 1 << 21 };
-struct link_load *net_links(const struct net *n, struct arena *a, int *nlink);
+struct link_load *net_links(const struct net *n, int job, struct arena *a, int *nlink);
 
 /* net_port_load: the account of the injection port of `node`, for processes that share a run; NULL
  * when not recorded. Its from, to and node are not set. */

@@ -258,7 +258,8 @@ static void tail_known(struct train *g, struct stage *s)
     o->free += l->debt;
     l->debt = 0;
     l->owner = NULL;
-    net_account(f->net, s->resource, w->index == 0, w->index == 0 ? w->flight->m->bytes : 0,
+    net_account(f->net, s->resource, w->flight->m, w->index == 0,
+                w->index == 0 ? w->flight->m->bytes : 0,
                 free - s->grant, s->grant - s->ask);
     /* Somebody waits for the resource, or the node has more to send. */
     if (l->request || (s->hop == 0 && f->source[s->resource].front))

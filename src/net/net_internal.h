@@ -67,7 +67,8 @@ struct net {
     /* messages of one node are handed over in the order of their ready times */
     bool port_private;
     int64_t in_flight;      /* messages accepted and not yet delivered */
-    struct link_load *load; /* (nresource), NULL unless wanted; who each is: net_links */
+    struct link_load *load; /* (njob x nresource), NULL unless wanted; who each is: net_links */
+    int njob;               /* whose messages are counted apart (net_count_jobs) */
     const struct routing *routing; /* NULL: the topology's routes, cables all alike (net_way.h) */
     sim_ps *wire;                  /* (nlink) what cables add to the hop latency; NULL: nothing */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
@@ -153,13 +154,13 @@ static inline void net_arrive(struct net *n, struct net_message *m)
     n->deliver(n->context, m);
 }
 
-/* net_account: resource was used for `busy` by a message (or a part of it: messages 0) that waited
- * `queue` for it. */
-static inline void net_account(struct net *n, int resource, int messages, int64_t bytes,
-                               sim_ps busy, sim_ps queue)
+/* net_account: resource was used for `busy` by m (or a part of it: messages 0) that waited `queue`
+ * for it. */
+static inline void net_account(struct net *n, int resource, const struct net_message *m,
+                               int messages, int64_t bytes, sim_ps busy, sim_ps queue)
 {
     if (!n->load) return;
-    struct link_load *l = &n->load[resource];
+    struct link_load *l = &n->load[(m->id >> NET_ID_JOB) * n->nresource + resource];
     l->messages += messages;
     l->bytes += bytes;
     l->busy_ps += busy;

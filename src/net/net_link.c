@@ -81,8 +81,9 @@ static void flight_return(struct net *n, struct flight *f)
     g->pool = f;
 }
 
-/* the message takes `resource` at `now` or when it is free; returns when */
-static sim_ps resource_take(struct net *n, int resource, int64_t bytes, sim_ps now, sim_ps busy)
+/* the message m takes `resource` at `now` or when it is free; returns when */
+static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, int64_t bytes,
+                            sim_ps now, sim_ps busy)
 {
     struct link_level *g = n->state;
     /* Others' messages go by links alone; those that came since a link was last taken are served
@@ -94,7 +95,7 @@ static sim_ps resource_take(struct net *n, int resource, int64_t bytes, sim_ps n
     }
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
-    net_account(n, resource, 1, bytes, busy, at - now);
+    net_account(n, resource, m, 1, bytes, busy, at - now);
     return at;
 }
 
@@ -171,7 +172,7 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
     struct net *n = subject;
     struct flight *f = (struct flight *)(uintptr_t)argument;
     sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->bytes), f->flits);
-    sim_ps x = resource_take(n, f->resource, f->bytes, now, busy);
+    sim_ps x = resource_take(n, f->resource, f->m, f->bytes, now, busy);
     if (n->path) f->path = net_path_hops(n, f->path, 1, f->resource);
     if (!net_is_ejection(n, f->resource)) {
         head_sent(n, f, x);
@@ -215,7 +216,7 @@ static void link_inject(struct net *n, struct net_message *m)
         own = m->ready > *port ? m->ready : *port;
         *port = ps_later(own, busy);
     }
-    m->injected = resource_take(n, net_injection(n, m->src), m->bytes, m->ready, busy);
+    m->injected = resource_take(n, net_injection(n, m->src), m, m->bytes, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
     /* The closed form of the empty network from there on. */
     m->uncontended =

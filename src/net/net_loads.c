@@ -3,6 +3,7 @@
  * The levels count by number of resource (net_account) and leave untouched what nothing passes. Who
  * a resource is, is only found out here: of 10^8 links, which a machine file of a few bytes may
  * have, a run on 16 ranks uses a few hundred, and a list of all of them would take 10 GB. */
+#include "base/check.h"
 #include "net/net.h"
 #include "net/net_internal.h"
 
@@ -28,18 +29,28 @@ static void name_load(const struct net *n, int resource, struct link_load *l)
     }
 }
 
-struct link_load *net_links(const struct net *n, struct arena *a, int *nlink)
+void net_count_jobs(struct net *n, int njob)
+{
+    CHECK(n->in_flight == 0 && n->njob == 1);
+    if (!n->load || njob == 1) return;
+    n->njob = njob;
+    n->load = TAKE(n->arena, size_product(njob, n->nresource), struct link_load);
+}
+
+struct link_load *net_links(const struct net *n, int job, struct arena *a, int *nlink)
 {
     *nlink = 0;
     if (!n->load) return NULL;
+    CHECK(job >= 0 && job < n->njob);
+    const struct link_load *load = n->load + (size_t)job * (size_t)n->nresource;
     const bool whole = n->nresource <= NET_LINKS_WHOLE;
     /* Counted first: an arena gives nothing back. */
     int count = whole ? n->nresource : 0;
-    for (int i = 0; !whole && i < n->nresource; i++) count += used(&n->load[i]);
+    for (int i = 0; !whole && i < n->nresource; i++) count += used(&load[i]);
     struct link_load *list = TAKE(a, count, struct link_load);
     for (int i = 0; i < n->nresource; i++) {
-        if (!whole && !used(&n->load[i])) continue;
-        list[*nlink] = n->load[i];
+        if (!whole && !used(&load[i])) continue;
+        list[*nlink] = load[i];
         name_load(n, i, &list[(*nlink)++]);
     }
     return list;

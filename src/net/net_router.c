@@ -140,8 +140,8 @@ static void tail_sent(struct routers *g, struct lane *v, struct leg *m, sim_ps t
     const bool last = net_is_ejection(f->net, m->port);
     out->owner = NULL;
     out->free = ps_later(tail, flit + f->net->allocation);
-    net_account(f->net, m->port, w->index == 0, w->index == 0 ? s->m->bytes : 0, w->flits * flit,
-                m->first - m->ask);
+    net_account(f->net, m->port, s->m, w->index == 0, w->index == 0 ? s->m->bytes : 0,
+                w->flits * flit, m->first - m->ask);
     v->left = ps_later(tail, flit);
     v->front = l->behind;
     router_leg_return(g, l);

@@ -160,7 +160,7 @@ static void replay_run(struct replay *r, struct arena *a)
     while (!(stopped = is_over(r)) && sim_step(r->sim)) continue;
     out->events = sim_events(r->sim);
     out->digest = sim_digest(r->sim);
-    out->link = net_links(r->net, a, &out->nlink);
+    out->link = net_links(r->net, 0, a, &out->nlink);
     /* No event left and messages missing: the net names its cycle, or the list itself is
      * circular. */
     out->deadlock = !stopped && out->arrived < r->q->nmessage;

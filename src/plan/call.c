@@ -53,8 +53,7 @@ void call_run(struct calls *c, struct run_spec *run, const struct machine_spec *
         struct text own = {0};
         if (run->machine_changes == NULL) machine_changes_between(file, &run->machine, &own);
         const char *changes = own.s != NULL ? own.s : run->machine_changes;
-        const struct machine_spec *m = &run->machine;
-        run_label_changed(m->label[0] != '\0' ? m->label : m->name, changes, &t);
+        run_label_made(run, changes, &t);
         text_free(&own);
     }
     if (c->last == NULL || strcmp(c->last, t.s) != 0) c->last = arena_text(c->arena, t.s);

@@ -10,6 +10,7 @@
 #include "plan/data_dir.h"
 #include "plan/expand.h"
 #include "plan/file_kind.h"
+#include "plan/jobs_file.h"
 #include "plan/machine_file.h"
 #include "plan/program_file.h"
 #include "plan/scenario_file.h"
@@ -43,6 +44,8 @@ static bool all_kernels_exist(const struct scenario *s, const struct plan_option
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++)
             if (!kernels_exist(&s->axis[i].point[j], o, e)) return false;
+    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++)
+        if (!kernels_exist(&s->jobs->job[i].set, o, e)) return false;
     return kernels_exist(&s->set, o, e);
 }
 
@@ -77,7 +80,11 @@ static void list_swept(struct plan *p, const struct scenario *s)
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) n += s->axis[i].point[j].n;
     /* room for all settings of all points, though most are of the same keys */
-    p->swept = TAKE(p->arena, n + 1, struct plan_swept);
+    p->swept = TAKE(p->arena, n + 3, struct plan_swept);
+    if (s->jobs != NULL) {
+        p->swept[p->nswept++] = (struct plan_swept){"job.name", false};
+        p->swept[p->nswept++] = (struct plan_swept){"job.beside", false};
+    }
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) add_swept(p, &s->axis[i].point[j]);
 }

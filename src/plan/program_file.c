@@ -13,6 +13,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "plan/data_dir.h"
+#include "plan/jobs_file.h"
 #include "spec/field.h"
 
 enum { MOST_BODIES = 1 << 27 };
@@ -254,6 +255,10 @@ void program_file_rename(const struct scenario *s, struct node *root, struct are
     /* Keys occur at the top, in a sweep and in the points of variants. */
     struct node *sweep = document_find(root, "sweep");
     if (sweep != NULL) rename_keys(s, sweep, a);
+    /* Jobs are mappings of settings, too. */
+    const struct node *jobs = document_find(root, "jobs");
+    for (struct node *n = jobs != NULL ? jobs->child : NULL; n != NULL; n = n->next)
+        rename_keys(s, n, a);
     /* The points of `variant` are mappings of settings, at the top or in a sweep. */
     struct node *at[2] = {document_find(root, "variant"),
                                sweep != NULL ? document_find(sweep, "variant") : NULL};
@@ -345,6 +350,8 @@ bool program_file_check(struct scenario *s, struct arena *a, struct err *e)
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++)
             if (!check_list(s, &s->axis[i].point[j], a, e)) return false;
+    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++)
+        if (!check_list(s, &s->jobs->job[i].set, a, e)) return false;
     return check_list(s, &s->set, a, e);
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/text.h"
 #include "plan/data_dir.h"
+#include "plan/jobs_file.h"
 #include "plan/program_file.h"
 #include "plan/sample_file.h"
 #include "plan/search_file.h"
@@ -211,6 +212,16 @@ static bool read_search(struct top *t, const struct node *n)
     return search_file_read(t->scenario, n, add_axis, t->arena, t->err);
 }
 
+static bool read_jobs(struct top *t, const struct node *n)
+{
+    return jobs_file_read(t->scenario, n, t->arena, t->err);
+}
+
+static bool read_combinations(struct top *t, const struct node *n)
+{
+    return jobs_file_combine(t->scenario, n, t->arena, t->err);
+}
+
 static bool read_sweep(struct top *t, const struct node *n)
 {
     if (n->kind != NODE_MAP) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
@@ -234,6 +245,7 @@ static const struct top_key {
      {"repetitions", read_repetitions},
     {"figures", read_figures},        {"only", read_only},         {"when", read_only},
     {"sweep", read_sweep},            {"optimise", read_search},
+    {"jobs", read_jobs},              {"combinations", read_combinations},
 };
 enum { NTOP = sizeof top_keys / sizeof *top_keys };
 
@@ -288,7 +300,7 @@ static bool is_sampled(const struct axis *x, const char *key)
 static bool check_axes(const struct scenario *s, struct err *e)
 {
     /* First what is searched: its middle is a setting for all runs, too. */
-    if (!search_file_check(s, e)) return false;
+    if (!search_file_check(s, e) || !jobs_file_check(s, e)) return false;
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->base.n; j++) {
             const struct setting *set = &s->base.at[j];
@@ -395,6 +407,11 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
         s->repetitions = named.repetitions;
         return fine;
     }
+    if (strcmp(name, "combinations") == 0) {
+        struct node n = {.kind = NODE_TEXT, .key = name, .text = equals + 1};
+        return jobs_file_combine(s, &n, a, e);
+    }
+    if (strncmp(name, "jobs.", 5) == 0) return jobs_file_set(s, name, equals + 1, a, e);
     if (!setting_is_key(full)) return program_file_unknown(s, name, "--set", 0, e);
     int at = remove_axis(s, full);
     search_file_drop(s, full);

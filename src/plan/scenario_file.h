@@ -35,6 +35,7 @@ struct scenario {
     int ncondition;
     struct condition condition[SCENARIO_MAX_CONDITIONS]; /* points that fail one are left out */
     struct plan_search *search; /* NULL: nothing is optimised */
+    struct scenario_jobs *jobs; /* what shares the machine (jobs_file.h); NULL: one program */
     int nfigure;
     const char **figure;
 };

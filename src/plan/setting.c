@@ -37,7 +37,9 @@ static const struct field *settable(const char *key, const struct field_table **
     /* Prices are for people, too, but they are numbers. */
     const bool title =
         f != NULL && f->label && f->kind == FIELD_TEXT && strcmp(key, "label") != 0;
-    return f == NULL || title || strcmp(key, "scenario") == 0 ? NULL : f;
+    /* What `jobs:` makes. */
+    const bool made = f != NULL && *table == &job_table;
+    return f == NULL || title || made || strcmp(key, "scenario") == 0 ? NULL : f;
 }
 
 /* "program.NAME", which is no setting of all programs: one that a program may declare. */

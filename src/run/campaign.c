@@ -286,7 +286,11 @@ static bool hand_over(struct campaign *c)
 /* Whether a run executes code of people, which may crash, loop for ever, or leave memory behind. */
 static bool loads_code(const struct run_spec *spec)
 {
-    return spec->program.kind == PROGRAM_KERNEL || spec->program.kind == PROGRAM_MPI;
+    bool loads = spec->program.kind == PROGRAM_KERNEL || spec->program.kind == PROGRAM_MPI;
+    for (int i = 0; spec->jobs && i < spec->jobs->n && !loads; i++)
+        loads = !spec->jobs->idle[i] && (spec->jobs->job[i]->program.kind == PROGRAM_KERNEL ||
+                                         spec->jobs->job[i]->program.kind == PROGRAM_MPI);
+    return loads;
 }
 
 /* Wait for the end of a worker that gets no more orders. */

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "base/text.h"
 #include "vp/world.h"
 
@@ -124,4 +125,27 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.threads = 1;
     l.workspace = make_workspaces(r, &load, scratch);
     return world_run(m, &load, record, seed, a, out, e);
+}
+
+bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec *m, uint64_t seed,
+                 struct run_heartbeat *heartbeat, struct arena *world, struct err *e)
+{
+    struct world_job own[WORLD_JOBS];
+    struct world_load load[WORLD_JOBS];
+    struct launch l[WORLD_JOBS];
+    CHECK(n <= WORLD_JOBS);
+    for (int i = 0; i < n; i++) {
+        const struct launch_job *j = &job[i];
+        own[i] = (struct world_job){j->name, NULL,      j->nrank, j->placement, j->start_ps,
+                                    j->seed, j->record, j->arena, j->out};
+        /* An idle job has no ranks, and so no load. */
+        if (!j->r) continue;
+        load[i] = load_of(j->r, j->largest);
+        load[i].working_set = working_set(j->r);
+        l[i] = (struct launch){j->r->rank, j->r->job, make_workspaces(j->r, &load[i], j->scratch)};
+        load[i].context = &l[i];
+        own[i].load = &load[i];
+        j->out->threads = 1;
+    }
+    return world_run_jobs(m, own, n, seed, heartbeat, world, e);
 }

@@ -11,6 +11,7 @@
 #include "measure/run_result.h"
 #include "program/program.h"
 #include "spec/run_spec.h"
+#include "vp/jobs.h"
 
 /* launch_largest_message: what the program promises of its messages [B], -1: nothing. After
  * open. */
@@ -37,5 +38,25 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
                 const struct record_spec *record, uint64_t seed, int64_t largest,
                 struct arena *scratch, struct arena *world, struct arena *a,
                 struct run_result *out, struct err *e);
+
+/* One of several jobs. */
+struct launch_job {
+    const char *name;
+    const struct program_run *r; /* prepared; NULL: it only keeps its processors */
+    int nrank;
+    const struct placement_spec *placement;
+    int64_t start_ps;
+    uint64_t seed;
+    int64_t largest; /* as of launch_run */
+    const struct record_spec *record;
+    struct arena *scratch; /* of its ranks' workspaces */
+    struct arena *arena;   /* of its result's arrays */
+    struct run_result *out;
+};
+
+/* launch_jobs: n jobs at once on machine `m`, by world_run_jobs; `seed` of the background, `world`
+ * as above. */
+bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec *m, uint64_t seed,
+                 struct run_heartbeat *heartbeat, struct arena *world, struct err *e);
 
 #endif

@@ -3,108 +3,25 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/check.h"
-#include "base/memory.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "guest/guest_program.h"
 #include "hosts/hosts_copy.h"
-#include "kernel/programs.h"
+#include "machine/node_cost.h"
 #include "machine/node_use.h"
+#include "run/beside.h"
 #include "run/launch.h"
 #include "run/omission.h"
-#include "schedule/schedule_program.h"
+#include "run/run_parts.h"
 
-/* --- what runs share -------------------------------------------------------------------------- */
-
-/* MOST_ATTEMPTS: no program asks for as many (kernel/trust.c). */
-enum { MOST_CACHES = 8, MOST_ATTEMPTS = 16, TAG_VERDICT = 400 };
+enum { TAG_VERDICT = 400 };
 
 /* KEPT_BYTES: memory of a run that the next one finds with its pages. To fault in and give back
  * those of a small run takes a fifth of its time; a large one must not hold them for small ones. */
 enum { KEPT_BYTES = 64 << 20 };
-
-/* One cache for all programs that make theirs with the same function, and the memory of a run:
- * `own` for the program's scene, `scratch` for workspaces and checks, `world` for the machine. */
-struct run_cache {
-    struct arena *own, *scratch, *world; /* owned; empty between runs */
-    int n;
-    const struct program_type *type[MOST_CACHES]; /* (n) the first of those that share */
-    struct program_cache *cache[MOST_CACHES]; /* (n) owned */
-};
-
-struct run_cache *run_cache_create(void)
-{
-    struct run_cache *c = memory_zeroed(1, sizeof *c);
-    c->own = arena_create();
-    c->scratch = arena_create();
-    c->world = arena_create();
-    return c;
-}
-
-void run_cache_destroy(struct run_cache *c)
-{
-    /* Each by the program type that made it. */
-    if (c == NULL) return;
-    for (int i = 0; i < c->n; i++) c->type[i]->cache_destroy(c->cache[i]);
-    arena_destroy(c->own);
-    arena_destroy(c->scratch);
-    arena_destroy(c->world);
-    free(c);
-}
-
-/* Programs that share scenes have the same function to make their cache: they share one. */
-static struct program_cache *cache_of(struct run_cache *c, const struct program_type *type)
-{
-    if (!type->cache_create) return NULL;
-    for (int i = 0; i < c->n; i++)
-        if (c->type[i]->cache_create == type->cache_create) return c->cache[i];
-    CHECK(c->n < MOST_CACHES);
-    c->type[c->n] = type;
-    return c->cache[c->n++] = type->cache_create();
-}
-
-/* --- one run ---------------------------------------------------------------------------------- */
-
-const struct program_type *run_program(const struct run_spec *spec)
-{
-    /* By kind, not by name: somebody's program may be called as a built-in one. */
-    if (!spec->kernel.own) return program_find(spec->kernel.name);
-    return spec->program.kind == PROGRAM_SCHEDULE ? &schedule_program
-                                                  : guest_program(spec->program.kind);
-}
-
-bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache,
-              struct arena *a, struct program_run *r, struct err *e)
-{
-    *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
-    /* How a run is executed is no part of its identity: an order changes this copy of the
-     * settings only. */
-    if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
-    if (order) r->threads = order->threads, r->cores = order->cores;
-    if (order) r->hosts = order->hosts, r->job_run = order->job_run * MOST_ATTEMPTS;
-    if (order)
-        r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
-    if (!r->type && spec->kernel.own)
-        return err_set(e, ERR_CONFIG,
-                       "program '%s' is not at hand: only a scenario says where it is",
-                       spec->kernel.name);
-    if (!r->type)
-        return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them",
-                       spec->kernel.name);
-    r->cache = cache_of(cache, r->type);
-    return r->type->open(r, e);
-}
-
-/* Images are mapped memory: an arena would not give it back. */
-void run_close(struct program_run *r)
-{
-    if (r->type && r->type->close) r->type->close(r);
-}
 
 /* Whether this process has the whole result: only one of those that share a run does. */
 static bool chief(const struct program_run *r) { return !r->hosts || r->hosts->rank == 0; }
@@ -151,6 +68,12 @@ static bool once_more(struct program_run *r, struct run_result *out)
 bool run_attempts(struct program_run *r, struct run_cache *c, struct arena *a,
                   struct run_result *out, struct err *e)
 {
+    /* Beside other jobs they repeat all together. */
+    if (r->spec.jobs) {
+        const bool made = beside_attempts(r, c->scratch, c->world, a, out, e);
+        arena_empty(c->world, KEPT_BYTES);
+        return made;
+    }
     /* A program asks again when its residual is too large: the next attempt has more refinement. */
     const struct arena_mark work = arena_mark(c->scratch), results = arena_mark(a);
     bool ok = attempt(r, c, a, out, e);
@@ -299,6 +222,26 @@ static void tell_node(const struct run_spec *spec, const struct program_estimate
         node_use_tell(&spec->machine.node, &use, text, size);
 }
 
+/* What simulating the others takes: their programs run as well. */
+static bool add_neighbours(const struct run_spec *spec, struct run_estimate *out, struct err *e)
+{
+    const struct job_set *set = spec->jobs;
+    /* Whichever of them is looked at, all are simulated on one thread. */
+    out->alone = "several jobs share the machine";
+    out->threads = 1;
+    for (int i = 0; i < set->n; i++) {
+        if (i + 1 == spec->job.number || set->idle[i]) continue;
+        /* A member of a set has no machine of its own. */
+        struct run_spec other = *set->job[i];
+        struct run_estimate more;
+        other.machine = spec->machine;
+        if (!run_explain(&other, &more, e)) return false;
+        out->host_s += more.host_s;
+        out->host_bytes += more.host_bytes;
+    }
+    return true;
+}
+
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
 {
     memset(out, 0, sizeof *out);
@@ -333,5 +276,6 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     run_close(&r);
     run_cache_destroy(cache);
     arena_destroy(own);
+    if (ok && spec->jobs) return add_neighbours(spec, out, e);
     return ok;
 }

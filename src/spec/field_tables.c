@@ -11,7 +11,7 @@
 
 /* In the order of a configuration's text: the run first, since its table holds the whole struct. */
 static const struct field_table *const tables[] = {&run_table, &machine_table, &model_table,
-                                                   &kernel_table, &program_table};
+                                                   &kernel_table, &program_table, &job_table};
 
 /* Every loop over all settings goes by this list: reading, printing, identity, manual. */
 const struct field_table *const *field_tables(int *n)

@@ -24,6 +24,8 @@
 /* Lines that stand for the content of files, in place of the paths. */
 static const char file_key[] = "model.file = sha256 ";
 static const char program_key[] = "program.file = sha256 ";
+/* Settings of the jobs beside a run. */
+static const char job_key[] = "jobs.";
 
 /* One table: the lines of its defaults, and what was printed last from which bytes. */
 struct part {
@@ -187,9 +189,11 @@ void identity_texts(struct identity *x, const void *base, const char *more, stru
     text_free(&lines);
 }
 
-void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
+/* Both texts of a run, with the lines that stand for files. */
+static void run_texts(struct identity *x, const struct run_spec *run, struct text *full,
+                      struct text *own)
 {
-    struct text full = {0}, own = {0}, more = {0};
+    struct text more = {0};
     /* A copy whose paths are emptied: the same file elsewhere is the same run. */
     struct run_spec plain = *run;
     /* An empty text is a text: a string that ends at once, not NULL. */
@@ -205,13 +209,31 @@ void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
     }
     /* What a program declares itself counts like any setting. */
     program_lines_print(run->program.parameters, &more);
-    identity_texts(x, &plain, more.s, &full, &own);
+    /* What runs beside it makes it another run. */
+    if (run->jobs) job_set_lines(run->jobs, run->job.number, &more);
+    identity_texts(x, &plain, more.s, full, own);
     text_free(&more);
+}
+
+void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
+{
+    struct text full = {0}, own = {0};
+    run_texts(x, run, &full, &own);
     /* 256 bits: no two different runs of any database will ever share one. */
     digest_sha256_hex(own.s, own.length, run->config_hash);
     run->config_text = arena_text(a, full.s);
     text_free(&full);
     text_free(&own);
+}
+
+const char *identity_job(struct identity *x, const struct run_spec *job, struct arena *a)
+{
+    struct text full = {0}, own = {0};
+    run_texts(x, job, &full, &own);
+    const char *lines = arena_text(a, own.s);
+    text_free(&full);
+    text_free(&own);
+    return lines;
 }
 
 /* For a single run the table of defaults is made and thrown away. */
@@ -266,6 +288,68 @@ static bool take_setting(struct run_spec *run, const char *key, const char *valu
     return fine;
 }
 
+/* Jobs that a text names besides the run itself. */
+struct jobs_read {
+    int n;
+    struct run_spec *job; /* (JOB_MOST), NULL: none so far */
+    bool *idle;           /* (JOB_MOST) */
+};
+
+static bool take_line(struct run_spec *run, char *line, struct arena *a, char *why, int size);
+
+/* What a text does not name has its default. */
+static void set_defaults(struct run_spec *run, struct arena *a)
+{
+    int n;
+    const struct field_table *const *table = field_tables(&n);
+    memset(run, 0, sizeof *run);
+    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, a);
+}
+
+/* "NUMBER.KEY = VALUE" behind "jobs." */
+static bool take_job_line(struct jobs_read *j, char *line, struct arena *a, char *why, int size)
+{
+    char *rest;
+    const long number = strtol(line, &rest, 10);
+    if (number < 1 || number > JOB_MOST || *rest != '.')
+        return snprintf(why, (size_t)size, "'jobs.%.80s' is no setting of a job", line), false;
+    /* Room for all when the first comes: texts with jobs are few. */
+    if (j->job == NULL) {
+        j->job = TAKE(a, JOB_MOST, struct run_spec);
+        j->idle = TAKE(a, JOB_MOST, bool);
+    }
+    for (; j->n < number; j->n++) set_defaults(&j->job[j->n], a);
+    if (strcmp(rest + 1, "idle = true") == 0) return j->idle[number - 1] = true;
+    return take_line(&j->job[number - 1], rest + 1, a, why, size);
+}
+
+/* The set that the run belongs to: it stands at its own place. */
+static void join_jobs(struct run_spec *run, struct jobs_read *j, struct arena *a)
+{
+    int ntable;
+    const struct field_table *const *table = field_tables(&ntable);
+    if (run->job.number == 0) return;
+    /* A job that is the only one of its set. */
+    if (j->job == NULL) {
+        j->job = TAKE(a, JOB_MOST, struct run_spec);
+        j->idle = TAKE(a, JOB_MOST, bool);
+    }
+    for (; j->n < run->job.number; j->n++) set_defaults(&j->job[j->n], a);
+    j->job[run->job.number - 1] = job_alone(run);
+    /* Texts as the plan makes them, so that the run has its identity again. */
+    struct job_set *set = TAKE(a, 1, struct job_set);
+    const struct run_spec **job = TAKE(a, j->n, const struct run_spec *);
+    const char **text = TAKE(a, j->n, const char *);
+    struct identity *x = identity_create(table, ntable);
+    for (int i = 0; i < j->n; i++) {
+        job[i] = &j->job[i];
+        text[i] = identity_job(x, job[i], a);
+    }
+    identity_destroy(x);
+    *set = (struct job_set){j->n, job, j->idle, text};
+    run->jobs = set;
+}
+
 /* One line, without its end, whose bytes are ours to change. */
 static bool take_line(struct run_spec *run, char *line, struct arena *a, char *why, int size)
 {
@@ -288,17 +372,18 @@ static bool take_line(struct run_spec *run, char *line, struct arena *a, char *w
  * default, as it was when the run was made. */
 bool run_from_text(struct run_spec *run, const char *text, struct arena *a, char *why, int size)
 {
-    int n;
-    const struct field_table *const *table = field_tables(&n);
-    memset(run, 0, sizeof *run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, a);
+    struct jobs_read jobs = {0};
+    set_defaults(run, a);
     for (char *line = arena_text(a, text); *line != '\0';) {
         char *end = strchrnul(line, '\n');
         const bool last = *end == '\0';
         *end = '\0';
         /* Empty lines are no settings. */
-        if (line < end && !take_line(run, line, a, why, size)) return false;
+        const bool job = strncmp(line, job_key, strlen(job_key)) == 0;
+        if (job && !take_job_line(&jobs, line + strlen(job_key), a, why, size)) return false;
+        if (!job && line < end && !take_line(run, line, a, why, size)) return false;
         line = last ? end : end + 1;
     }
+    join_jobs(run, &jobs, a);
     return true;
 }

@@ -37,6 +37,10 @@ void identity_forget(struct identity *x);
 void identity_texts(struct identity *x, const void *base, const char *more, struct text *full,
                     struct text *own);
 
+/* identity_job: the settings of a member of a set (job_alone) that differ from their defaults, as
+ * lines in `a`: job_set.text. */
+const char *identity_job(struct identity *x, const struct run_spec *job, struct arena *a);
+
 /* identity_set: fill config_text (in `a`) and config_hash of a run whose settings, model_file and
  * program are final. Files of models and programs count by their content, wherever they lie; the
  * parameters of a program count as settings do. */

@@ -37,7 +37,8 @@ static const char *const rules[] = {
     NULL};
 static const char *const allocators[] = {"select", "islip", NULL};
 static const char *const barriers[] = {"software", "hardware", NULL};
-static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
+static const char *const placements[] = {"linear", "snake",  "gray", "random",
+                                         "list",   "groups", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
 static const char *const offloads[] = {"handshakes", "none", "copies", NULL};
@@ -421,7 +422,8 @@ static const struct field fields[] = {
     /* Which rank runs where. */
     {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements,
      .fallback = "linear",
-     .doc = "order in which ranks fill the nodes"},
+     .doc = "order in which ranks fill the nodes; groups: whole routers, planes, sub-trees or "
+            "groups of the network where jobs leave them free"},
     {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads,
      .fallback = "block",
      .idle = machine_idle_unless_several,

@@ -103,9 +103,8 @@ struct network_spec {
     enum vc_allocator vc_allocator; /* with routing: how heads that ask get channels */
 };
 
-enum placement_kind {
-    PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM, PLACEMENT_LIST
-};
+enum placement_kind { PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM,
+                      PLACEMENT_LIST, PLACEMENT_GROUPS };
 enum spread_kind { SPREAD_BLOCK, SPREAD_CYCLIC };
 
 struct placement_spec {

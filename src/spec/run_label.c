@@ -115,12 +115,21 @@ void run_label_changed(const char *name, const char *changes, struct text *out)
     text_free(&value);
 }
 
+void run_label_made(const struct run_spec *run, const char *changes, struct text *out)
+{
+    const struct machine_spec *m = &run->machine;
+    /* Jobs of one machine would all be called alike. */
+    if (run->job.number > 0)
+        text_add(out, run->job.beside[0] != '\0' ? "%s beside %s, " : "%s alone, ",
+                 run->job.name, run->job.beside);
+    run_label_changed(m->label[0] != '\0' ? m->label : m->name, changes, out);
+}
+
 void run_label(const struct run_spec *run, struct text *out)
 {
     if (run->called != NULL) text_add(out, "%s", run->called);
     else if (run->label[0] != '\0') text_add(out, "%s", run->label);
-    else run_label_changed(run->machine.label[0] != '\0' ? run->machine.label : run->machine.name,
-                           run->machine_changes, out);
+    else run_label_made(run, run->machine_changes, out);
 }
 
 /* The lines of the canonical text that begin with "machine.", but for two questions, which are no

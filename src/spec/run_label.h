@@ -24,6 +24,10 @@ const char *field_short_key(const struct field_table *t, const char *key);
  * all of them. */
 void run_label_changed(const char *name, const char *changes, struct text *out);
 
+/* run_label_made: what a run is called that nobody has named: its machine with `changes`, behind
+ * "solver beside ring" where it tells of one of several jobs; appended. */
+void run_label_made(const struct run_spec *run, const char *changes, struct text *out);
+
 /* run_label: what `run` is called, appended: `called`, as the plan made it; else `label`; else its
  * machine with what was changed. */
 void run_label(const struct run_spec *run, struct text *out);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spec/job_spec.h"
 #include "spec/kernel_spec.h"
 #include "spec/machine_spec.h"
 #include "spec/model_spec.h"
@@ -89,6 +90,8 @@ struct run_spec {
     struct kernel_spec kernel;
     struct program_spec program;
     struct record_spec record;
+    struct job_spec job;
+    const struct job_set *jobs; /* the jobs that share the machine, NULL: one has it; borrowed */
     int nrank;               /* P */
     uint64_t seed;           /* of noise; the model has its own */
     int rep;                 /* repetition number, 0-based */

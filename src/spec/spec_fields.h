@@ -6,6 +6,7 @@
 
 extern const struct field_table machine_table;
 extern const struct field_table model_table;
+extern const struct field_table job_table;
 extern const struct field_table kernel_table;
 extern const struct field_table program_table;
 extern const struct field_table run_table;

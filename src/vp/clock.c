@@ -9,9 +9,10 @@
  * digests. */
 void vp_wake(struct world *w, struct vp *v)
 {
+    w = w->whole;
     int at = w->ready_head + w->ready_count++;
     CHECK(w->ready_count <= w->nown);
-    w->ready[at >= w->nown ? at - w->nown : at] = v->comm.rank;
+    w->ready[at >= w->nown ? at - w->nown : at] = v;
 }
 
 /* The state is kept for reports of deadlocks: whoever blocks is found with what it waits
@@ -29,8 +30,9 @@ void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
  * so the fiber is never entered again; its stack is freed with the run. */
 void vp_time_out(struct vp *v)
 {
-    if (!v->world->late) v->world->late = v;
-    v->world->stopped = true;
+    struct world *whole = v->world->whole;
+    if (!whole->late) whole->late = v;
+    whole->stopped = true;
     for (;;) vp_block(v, WAITING_NOTHING, NULL);
 }
 
@@ -67,8 +69,8 @@ void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int pe
     r->span[r->nspan++] = (struct span){.rank = v->comm.rank,
                                         .stage = v->stage,
                                         .kind = kind,
-                                        .begin_ps = begin,
-                                        .end_ps = end,
+                                        .begin_ps = begin - w->start,
+                                        .end_ps = end - w->start,
                                         .peer = peer,
                                         .bytes = bytes,
                                         .message = message};

@@ -113,7 +113,7 @@ sim_ps deadlock_reached(const struct world *w, int first, int n)
     sim_ps latest = 0;
     for (int i = first; i < first + n; i++) {
         const struct vp *v = &w->vp[i];
-        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock;
+        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock - w->start;
         if (at > latest) latest = at;
     }
     return latest;
@@ -125,7 +125,7 @@ void deadlock_time(struct world *w, sim_ps reached)
     w->result->makespan_ps = reached;
     for (int i = w->first; i < w->first + w->nown; i++) {
         const struct vp *v = &w->vp[i];
-        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock;
+        const sim_ps at = v->waiting_for == WAITING_NOTHING ? v->finish : v->clock - w->start;
         if (v->stages) v->stages[w->nstage].wait_ps += reached - at;
     }
 }
@@ -170,7 +170,7 @@ void find_leftovers(struct world *w)
                  "it has ended without receiving the message of %lld bytes, tag %lld, that rank %d "
                  "sent it at %.9g s",
                  (long long)m->bytes, (long long)m->tag, m->from->comm.rank,
-                 (double)m->sent / SIM_PS_PER_S);
+                 (double)(m->sent - w->start) / SIM_PS_PER_S);
         vp_record_failure(v, v->comm.file, v->comm.line, text);
         return;
     }

@@ -20,14 +20,14 @@ void vp_record_failure(struct vp *v, const char *file, int line, const char *tex
     struct world *w = v->world;
     struct run_result *r = w->result;
     /* One failure is told; those that follow are often its consequences. */
-    if (w->stopped) return;
-    w->stopped = true;
-    w->failed = true;
+    if (w->whole->stopped) return;
+    w->whole->stopped = true;
+    w->whole->failed = w->failed = true;
     /* What is not a call of comm.h has a text that says where it is. */
     char place[128] = "";
     if (file) snprintf(place, sizeof place, " (%s:%d)", vp_base_name(file), line);
     snprintf(r->text, sizeof r->text, "rank %d in %s at %.9g s%s: %s", v->comm.rank,
-             r->stage_name[v->stage], (double)v->clock / SIM_PS_PER_S, place, text);
+             r->stage_name[v->stage], (double)(v->clock - w->start) / SIM_PS_PER_S, place, text);
 }
 
 /* The loop in world.c sees `stopped` and enters no fiber again; a rank that blocks here

@@ -64,8 +64,12 @@ static inline uint64_t message_key(const struct message *m)
     return (uint64_t)(m->net.id >> 32 & 0xffffff) << 24 | (uint64_t)(m->net.id & 0xffffff);
 }
 
-/* message_source: the rank that sent m, which its number tells without a look at the sender. */
-static inline int message_source(const struct message *m) { return (int)(m->net.id >> 32); }
+/* message_source: the rank of its job that sent m, which its number tells without a look at the
+ * sender. */
+static inline int message_source(const struct message *m)
+{
+    return (int)(m->net.id >> 32 & NET_ID_RANKS);
+}
 
 /* --- pool.c --- */
 

@@ -9,8 +9,9 @@ static void rank_main(void *argument)
     struct vp *v = argument;
     struct world *w = v->world;
     w->load->program(&v->comm, w->load->context);
-    v->finish = v->clock;
+    v->finish = v->clock - w->start;
     w->nfinished++;
+    if (w->whole != w) w->whole->nfinished++;
 }
 
 void world_make_ranks(struct world *w, uint64_t seed)
@@ -33,12 +34,13 @@ void world_make_ranks(struct world *w, uint64_t seed)
         v->digest = DIGEST_START;
         /* The stream depends on seed and rank alone. */
         if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
-        v->fiber = fiber_start(w->fibers, i, rank_main, v);
+        v->clock = w->start;
+        v->fiber = fiber_start(w->fibers, (int)(v - w->whole->vp), rank_main, v);
         /* Tables of matching only where they are used: at 65,536 ranks they would take
          * memory for nothing. */
         if (w->load->timed) v->matching = matching_create(w);
     }
-    /* All start at time 0; the host's order acts on no result. */
+    /* All start together; the host's order acts on no result. */
     const int *order = w->nown == w->nrank ? w->load->order : NULL;
     for (int i = w->first; i < w->first + w->nown; i++) vp_wake(w, &w->vp[order ? order[i] : i]);
 }
@@ -48,7 +50,7 @@ static inline struct vp *ready_ahead(const struct world *w, int ahead)
 {
     if (ahead >= w->ready_count) return NULL;
     int at = w->ready_head + ahead;
-    return &w->vp[w->ready[at >= w->nown ? at - w->nown : at]];
+    return w->ready[at >= w->nown ? at - w->nown : at];
 }
 
 /* With many ranks each lies cold in memory when its turn comes: the ring tells early
@@ -81,7 +83,7 @@ void world_resume(struct world *w, int64_t most)
 {
     while (w->ready_count && !w->stopped && most-- > 0) {
         warm_up(w);
-        struct vp *v = &w->vp[w->ready[w->ready_head]];
+        struct vp *v = w->ready[w->ready_head];
         if (++w->ready_head == w->nown) w->ready_head = 0;
         w->ready_count--;
         fiber_enter(v->fiber);

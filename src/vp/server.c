@@ -13,7 +13,7 @@ static sim_ps service_time(const struct world *w, int64_t bytes)
 /* Whoever finds the server busy is bound by whom it serves: by the moment when that began. */
 static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
 {
-    struct world *w = v->world;
+    struct world *w = v->world->whole;
     const int rank = v->comm.rank, stage = v->stage;
     const uint32_t own = vp_path_until(v, now), other = w->server_path;
     v->path = v->server_start > now
@@ -35,7 +35,7 @@ static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
 static void begin_service(void *subject, uint64_t bytes, sim_ps now)
 {
     struct vp *v = subject;
-    struct world *w = v->world;
+    struct world *w = v->world->whole;
     v->server_start = now > w->server_free ? now : w->server_free;
     if (w->path) bind_path(v, now, (int64_t)bytes);
     w->server_free = ps_later(v->server_start, service_time(w, (int64_t)bytes));

@@ -188,6 +188,7 @@ static void make_shares(struct team *t)
         const int first = i << t->shift, left = w->nrank - first;
         s->world = *w;
         s->world.team = t;
+        s->world.whole = &s->world;
         s->world.share_barrier = team_barrier;
         s->world.first = first;
         s->world.nown = left < 1 << t->shift ? left : 1 << t->shift;

@@ -32,13 +32,8 @@
 enum { LANE_ARRIVAL = NET_LANE_START - 5, LANE_POST, LANE_POLL, LANE_SERVER, LANE_BACKGROUND };
 
 enum waiting_for {
-    WAITING_NOTHING,
-    WAITING_RECEIVE,
-    WAITING_SEND,
-    WAITING_BARRIER,
-    WAITING_SERVER,
-    WAITING_ANY,
-    WAITING_POLL
+    WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER,
+    WAITING_SERVER, WAITING_ANY, WAITING_POLL
 };
 
 struct vp {
@@ -87,11 +82,15 @@ struct world {
     bool broken; /* a process of the job does not answer */
     /* by its ranks, where processes share the run (shared.h); NULL: not kept */
     struct published *published;
-    int *ready; /* (nown) ring of ranks that can go on */
+    struct vp **ready; /* (nown) ring of ranks that can go on */
     int ready_head, ready_count;
     struct message_pool *pool; /* of the host thread */
     /* of several threads: each share of the ranks has its world (team.h); NULL: one */
     struct team *team;
+    /* what several jobs share: ring, `stopped`, server (jobs.h); itself where there is one */
+    struct world *whole;
+    int job;      /* number among them, from 0 */
+    sim_ps start; /* when its ranks begin: the zero of all that is told of them */
     int first, nown;           /* its ranks: first .. first + nown - 1 */
     void (*arrived)(struct message *m);    /* what the end of a message's trip means */
     /* of a share: v enters the machine's barrier; NULL: one thread */

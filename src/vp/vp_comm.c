@@ -18,6 +18,12 @@
 
 enum { BARRIER_TAG = 1 << 30 };
 
+/* The number of m within its job: what others run beside it is no part of a job's own record. */
+static int64_t own_id(const struct message *m)
+{
+    return m->net.id & (((int64_t)1 << NET_ID_JOB) - 1);
+}
+
 /* Overhead and copying by the machine's segments (docs/network.md). Where one kernel
  * server serves the whole machine, the rank waits for its turn first and is busy for the
  * longer of the two. The span covers waiting for the server, too. */
@@ -36,7 +42,7 @@ static void charge_send(struct vp *v, const struct message *m)
     vp_path(v, PATH_SEND, served, m->bytes);
     vp_stage_time(v)->send_ps += cost;
     if (w->record->spans)
-        vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, m->net.id);
+        vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, own_id(m));
 }
 
 /* The same at the other end, with costs of its own. */
@@ -55,7 +61,7 @@ static void charge_receive(struct vp *v, const struct message *m)
     vp_path(v, PATH_RECV, served, m->bytes);
     vp_stage_time(v)->recv_ps += cost;
     if (w->record->spans)
-        vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, m->net.id);
+        vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, own_id(m));
 }
 
 static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data,
@@ -80,7 +86,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     m->tag = tag;
     /* Sender and count make a number that is unique in the run and orders events at one
      * time, whichever way the host runs ranks. */
-    m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
+    m->net.id = (int64_t)w->job << NET_ID_JOB | (int64_t)v->comm.rank << 32 | v->sent++;
     m->sent = v->clock;
     /* Counted at the sender, so that totals over ranks count each message once. */
     vp_stage_time(v)->messages++;
@@ -93,7 +99,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     m->net.path = v->path;
     offload_send(v, m);
     /* The order of sending counts from here, before the network says when it arrives. */
-    if (w->load->timed) matching_announce(m);
+    if (v->matching) matching_announce(m);
     return m;
 }
 
@@ -191,8 +197,8 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     charge_receive(v, m);
     const int64_t kept = m->bytes < r->capacity ? m->bytes : r->capacity;
     if (kept && !m->hollow) memcpy(r->buffer, m->data, (size_t)kept);
-    v->digest = digest_mix(v->digest, (uint64_t)m->net.id);
-    v->digest = digest_mix(v->digest, (uint64_t)m->net.arrival);
+    v->digest = digest_mix(v->digest, (uint64_t)own_id(m));
+    v->digest = digest_mix(v->digest, (uint64_t)(m->net.arrival - v->world->start));
     message_give(v->world->pool, m);
     r->active = REQUEST_DONE;
     r->detail = NULL;
@@ -347,7 +353,12 @@ static void vp_stage(struct comm *c, int stage)
     if (__builtin_expect(v->world->balanced != NULL, 0)) compute(v, vp_balance_entry(v), NULL);
 }
 
-static int64_t vp_now(struct comm *c) { return ((struct vp *)c)->clock; }
+/* A job's clock begins with it. */
+static int64_t vp_now(struct comm *c)
+{
+    const struct vp *v = (struct vp *)c;
+    return v->clock - v->world->start;
+}
 
 /* Outputs are for checking answers and take no simulated time. */
 static void vp_publish(struct comm *c, int output, int64_t first, int64_t n, const double *data)

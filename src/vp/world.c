@@ -22,11 +22,11 @@
 #include "vp/path.h"
 #include "vp/team.h"
 #include "vp/vp.h"
+#include "vp/world_parts.h"
 
-enum { STACK_BYTES = 64 * 1024 };
 
 /* The last step of a trip. A hand-shake goes its own way, all else to whoever matches. */
-static void arrived(struct message *m)
+void world_arrived(struct message *m)
 {
     switch ((enum message_kind)m->kind) {
     /* Timed programs match by simulated time, all others by order alone. */
@@ -45,21 +45,19 @@ static void arrived(struct message *m)
 }
 
 /* The network knows its own part of a message, which is the first member of ours. */
-static void deliver(void *context, struct net_message *m)
+void world_deliver(void *context, struct net_message *m)
 {
     struct world *w = context;
     struct message *own = (struct message *)m;
     if (w->team && team_elsewhere(w, own)) team_post(w, own);
-    else arrived(own);
+    else world_arrived(own);
 }
 
 /* Arrays of all ranks; fresh memory costs nothing until it is used. */
-static void make_tables(struct world *w)
+void world_make_tables(struct world *w)
 {
     /* One row more than stages: "end" takes the idle time until the last rank is done. */
     const int row = w->nstage + 1;
-    w->vp = TAKE(w->scratch, w->nrank, struct vp);
-    w->ready = TAKE(w->scratch, w->nrank, int);
     w->result->stage = TAKE(w->arena, size_product(w->nrank, row), struct stage_time);
     w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
 }
@@ -79,7 +77,7 @@ static void tell_heartbeat(const struct world *w)
 /* Ranks run ahead until they wait; only then is it safe to let simulated time pass. So no
  * event is taken while a rank could still do something earlier: conservative simulation
  * with one clock for events and one for each rank. */
-static void loop(struct world *w)
+void world_loop(struct world *w)
 {
     unsigned quiet_events = PULSE_EVENTS;
     do {
@@ -95,7 +93,7 @@ static void loop(struct world *w)
 
 /* Another thread reads these, and needs none of them in step with another: relaxed order
  * is enough. */
-static void begin_heartbeat(const struct world *w, double now)
+void world_begin_heartbeat(const struct world *w, double now)
 {
     struct run_heartbeat *p = w->load->heartbeat;
     if (!p) return;
@@ -107,11 +105,11 @@ static void begin_heartbeat(const struct world *w, double now)
 
 static int64_t stack_bytes(const struct world *w)
 {
-    return w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES;
+    return w->load->stack_bytes > 0 ? w->load->stack_bytes : WORLD_STACK_BYTES;
 }
 
 /* What to do depends on whose program it is. */
-static void stack_text(const struct world *w, int rank, char *text, size_t size)
+void world_stack_text(const struct world *w, int rank, char *text, size_t size)
 {
     snprintf(text, size,
              "rank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s", rank,
@@ -121,7 +119,7 @@ static void stack_text(const struct world *w, int rank, char *text, size_t size)
 }
 
 /* The digest covers events, what ranks received and when, and when they ended. */
-static void collect(struct world *w)
+void world_collect(struct world *w)
 {
     struct run_result *r = w->result;
     uint64_t digest = digest_mix(DIGEST_START, sim_digest(w->sim));
@@ -157,7 +155,7 @@ static void measure_stacks(struct world *w)
     r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &rank);
     if (rank < 0) return;
     w->failed = true;
-    stack_text(w, rank, r->text, sizeof r->text);
+    world_stack_text(w, rank, r->text, sizeof r->text);
 }
 
 /* How much later everything else may be: from the ends of all ranks back. */
@@ -193,10 +191,10 @@ static void trace_path(struct world *w)
 }
 
 /* Links belong to the network, which ends with the run. */
-static void copy_links(struct world *w)
+void world_copy_links(struct world *w)
 {
     int n;
-    w->result->link = net_links(w->net, w->arena, &n);
+    w->result->link = net_links(w->net, w->job, w->arena, &n);
     w->result->nlink = n;
 }
 
@@ -213,12 +211,21 @@ static void foresee(const struct net_message *m, int step)
     }
 }
 
-static void name_stages(struct run_result *r, int nstage, const char *const *name)
+void world_name_stages(struct run_result *r, int nstage, const char *const *name)
 {
     CHECK(nstage >= 1 && nstage < RUN_MAX_STAGES);
     for (int k = 0; k < nstage; k++) text_copy(r->stage_name[k], sizeof r->stage_name[k], name[k]);
     text_copy(r->stage_name[nstage], sizeof r->stage_name[nstage], "end");
     r->nstage = nstage + 1;
+}
+
+bool world_make_network(struct world *w, bool links, struct err *e)
+{
+    w->net = net_create(w->machine, w->topology, w->sim, w->scratch, world_deliver, w, links, e);
+    if (!w->net) return false;
+    net_set_in_order(w->net, w->eager_only);
+    net_foresee(w->net, foresee);
+    return true;
 }
 
 /* From the outside in: topology, places of ranks, network, stacks. Whatever fails has set
@@ -234,10 +241,7 @@ static bool build(struct world *w, struct err *e)
     w->node_cost = node_use_cost(&m->node, &use);
     w->software = software_cost_used(m, &use);
     w->result->working_set = w->load->working_set;
-    w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
-    if (!w->net) return false;
-    net_set_in_order(w->net, w->eager_only);
-    net_foresee(w->net, foresee);
+    if (!world_make_network(w, w->record->links, e)) return false;
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
     if (w->record->path && w->record->slack) path_keep_losers(w->path);
@@ -255,7 +259,7 @@ static void end_shared(struct world *w)
     const bool chief = w->load->hosts->rank == 0;
     /* Whatever the processes are asked for, one that does not answer breaks the job. */
     if (end == SHARED_FINISHED && !shared_collect(w)) end = SHARED_BROKEN;
-    if (end == SHARED_FINISHED && chief) copy_links(w);
+    if (end == SHARED_FINISHED && chief) world_copy_links(w);
     if (end == SHARED_DEADLOCK && !shared_gather_waiting(w)) end = SHARED_BROKEN;
     if (end == SHARED_DEADLOCK && chief) {
         deadlock_explain(w);
@@ -275,14 +279,16 @@ static void run(struct world *w, uint64_t seed)
 {
     struct run_result *r = w->result;
     double begin = host_seconds();
-    begin_heartbeat(w, begin);
-    make_tables(w);
+    world_begin_heartbeat(w, begin);
+    w->vp = TAKE(w->scratch, w->nrank, struct vp);
+    w->ready = TAKE(w->scratch, w->nrank, struct vp *);
+    world_make_tables(w);
     if ((w->load->threads > 1 || w->load->hosts) && !world_alone(w->machine, w->load, w->record)) {
         team_run(w, seed);
     } else {
         world_make_ranks(w, seed);
         background_start(w, seed);
-        loop(w);
+        world_loop(w);
     }
     r->host_s = host_seconds() - begin;
     if (w->load->hosts) {
@@ -293,8 +299,8 @@ static void run(struct world *w, uint64_t seed)
         find_leftovers(w);
     if (w->nfinished == w->nrank && !w->failed) measure_stacks(w);
     if (w->nfinished == w->nrank && !w->failed) {
-        collect(w);
-        copy_links(w);
+        world_collect(w);
+        world_copy_links(w);
         if (w->path) trace_path(w);
         return;
     }
@@ -323,7 +329,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
         .result = out,
         .arena = a,
         .scratch = load->scratch ? load->scratch : arena_create(),
-        .arrived = arrived,
+        .arrived = world_arrived,
         .sim = sim_create(),
         .nrank = load->nrank,
         .nown = load->nrank,
@@ -338,6 +344,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
     };
     struct published published = {.lock = PTHREAD_MUTEX_INITIALIZER};
     pool.arena = w.scratch;
+    w.whole = &w;
     if (load->hosts) {
         int end;
         CHECK(!world_alone(m, load, record));
@@ -346,7 +353,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
         if (load->hosts->rank > 0) w.published = &published;
     }
     out->nrank = load->nrank;
-    name_stages(out, load->nstage, load->stage_name);
+    world_name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);
     if (ok) run(&w, seed);
     path_log_destroy(w.path);

@@ -253,6 +253,8 @@ static void try_key(const char *scene, const struct field_table *t, const struct
     struct plan p;
     struct err e;
     snprintf(full, sizeof full, "%s%s%s", t->prefix, t->prefix[0] != '\0' ? "." : "", f->key);
+    /* what `jobs:` of a scenario makes, and nobody sets one by one */
+    if (strcmp(t->prefix, "job") == 0) return;
     if (f->label || strcmp(full, "scenario") == 0 || strcmp(full, "machine.name") == 0) return;
     bool usable = other_value(f, full, (const char *)&before->run[0] + t->offset, &value);
     text_add(&set, "%s=%s", full, value.s);

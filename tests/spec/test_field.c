@@ -89,6 +89,7 @@ static void every_member_of_a_run_has_one_field(void **state)
     memset(covered + offsetof(struct run_spec, called), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused_kind), 1, sizeof(int));
+    memset(covered + offsetof(struct run_spec, jobs), 1, sizeof(void *));
     /* a study's own question, which no file asks: shares that are made even */
     memset(covered + offsetof(struct run_spec, record.balance), 1, sizeof(void *));
     /* of no meaning: nobody shares the first cache, and the memory has no capacity */

@@ -1,0 +1,56 @@
+/* expand_parts.h - what expand.c and expand_jobs.c share: a plan while it grows. */
+#ifndef PLAN_EXPAND_PARTS_H
+#define PLAN_EXPAND_PARTS_H
+
+#include "plan/call.h"
+#include "plan/expand.h"
+#include "plan/jobs_file.h"
+#include "plan/machine_changes.h"
+#include "spec/identity.h"
+
+/* What holds for all runs on one machine. */
+struct start {
+    const char *name; /* as it was asked for */
+    struct run_spec run; /* machine and base settings applied */
+    struct machine_spec file; /* the machine as its file has it */
+    struct machine_file whole; /* with where each value comes from */
+    struct start *next; /* the one that was made before */
+};
+
+/* What a plan keeps, so that a point can be made again with other settings. */
+struct plan_memory {
+    const struct scenario *scenario;
+    struct start *starts;
+    struct start **start_of; /* (nrun) on which machine each run is */
+};
+
+struct expansion {
+    struct plan *plan;
+    const struct scenario *scenario;
+    struct err *err;
+    struct start *starts; /* made so far, newest first */
+    struct start *present; /* of the present point */
+    int point[SCENARIO_MAX_AXES]; /* where each axis stands */
+    const struct setting_list *job; /* the settings of the job that is made, NULL: there are none */
+    const struct err *room; /* why its jobs do not fit together, NULL: they do */
+    struct run_spec *run;         /* the plan's */
+    struct identity *identity;    /* owned */
+    struct machine_changes changes; /* of the machines seen so far */
+    struct calls calls;             /* what runs are called */
+};
+
+/* expand_spec: the settings of the present point, with those of x->job, in *run: not yet named or
+ * identified. False with x->err. expand_finish: conditions, name, files, identity; 1: made, 0: left
+ * out, -1: failed. */
+bool expand_spec(struct expansion *x, struct run_spec *run);
+int expand_finish(struct expansion *x, struct run_spec *run);
+
+/* expand_path: the model's file of *run, found and digested. False with x->err. */
+bool expand_path(struct expansion *x, struct run_spec *run);
+
+/* expand_jobs: the runs of the present point of a scenario with jobs, into run
+ * (expand_jobs_runs): one for each job of each combination. Returns how many, -1 with x->err. */
+int expand_jobs(struct expansion *x, struct run_spec *run);
+int64_t expand_jobs_runs(const struct scenario_jobs *jobs);
+
+#endif
