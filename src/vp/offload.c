@@ -31,6 +31,7 @@ static void forget(struct pieces *p, sim_ps now)
 {
     int old = 0;
     while (old < p->n && p->piece[old].end <= now) old++;
+    if (old == 0) return; /* also where there is no array yet */
     p->n -= old;
     memmove(p->piece, p->piece + old, (size_t)p->n * sizeof *p->piece);
 }

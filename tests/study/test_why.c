@@ -147,6 +147,32 @@ static void a_memory_that_binds_is_a_parameter_of_the_path(void **state)
     }
 }
 
+/* An engine's copies are steps of their own and stand for the same parameters: rounds of long
+ * messages, with a thousandth more on each byte received or sent. */
+static void copies_of_an_engine_are_parameters_of_the_path(void **state)
+{
+    (void)state;
+    static const char *const set[] = {
+        "machine=paragon", "kernel=ring", "ranks=8", "level=loggp", "kernel.message=16 KiB",
+        "kernel.repeat=2", "machine.software.recv.copy=40 ns/B",
+        "machine.software.send.copy=50 ns/B", "machine.software.offload=copies"};
+    static const char *const key[] = {"machine.software.recv.copy", "machine.software.send.copy"};
+    static const enum path_cause cause[] = {PATH_ENGINE_RECV, PATH_ENGINE_SEND};
+    struct plan p = read_plan(sizeof set / sizeof set[0], set);
+    struct arena *a = arena_create();
+    const struct why w = study(&p.run[0], a);
+    for (int i = 0; i < 2; i++) {
+        struct run_spec slower = p.run[0];
+        const int64_t share = why_contribution(&p.run[0], &w.run, key[i]);
+        assert_true(why_scale(&slower.machine, key[i], 1.001));
+        const int64_t longer = makespan(&slower, a) - w.run.makespan_ps;
+        assert_true(share > 0 && share == time_of(&w, cause[i]));
+        assert_true(llabs(1000 * longer - share) <= share / 100);
+    }
+    arena_destroy(a);
+    plan_free(&p);
+}
+
 /* ---- derivatives ---- */
 
 static const char *const machines[] = {"t3e-300",     "paragon",    "paragon-am",
@@ -315,6 +341,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pingpong_is_what_its_closed_form_says),
         cmocka_unit_test(a_memory_that_binds_is_a_parameter_of_the_path),
+        cmocka_unit_test(copies_of_an_engine_are_parameters_of_the_path),
         cmocka_unit_test(counts_are_derivatives_to_the_picosecond),
         cmocka_unit_test(derivatives_with_contention_are_near),
         cmocka_unit_test(the_path_is_whole_everywhere),

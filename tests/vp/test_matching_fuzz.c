@@ -278,8 +278,9 @@ static void try_on(uint64_t seed, int nrank, const struct machine_spec *machine)
     other = go_fuzz(&m, &f, true, NULL);
     expect_equal(&f, "sources given", &wild, &other, false);
     arena_destroy(other.arena);
-    /* without time, receives from one source do not wait for each other over memory */
-    if (m.software.shared_bandwidth == 0) {
+    /* without time, receives from one source do not wait for each other over memory, nor behind the
+     * copies of an engine */
+    if (m.software.shared_bandwidth == 0 && m.software.offload != OFFLOAD_COPIES) {
         other = go_fuzz(&m, &f, false, NULL);
         expect_equal(&f, "without time", &wild, &other, false);
         arena_destroy(other.arena);
@@ -332,6 +333,21 @@ static void crowded_machines(void **state)
     }
 }
 
+/* Hand-shakes that wait for computing, and copies that are made beside it: what a rank does on the
+ * host before an event must not decide on what the event finds. */
+static void programs_with_engines_and_without(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        const int nrank = 2 + (int)(seed % 8);
+        struct machine_spec m = crossbar(nrank);
+        m.network.level = seed % 3 ? LEVEL_LOGGP : LEVEL_LINK;
+        m.software.offload = seed % 2 ? OFFLOAD_NONE : OFFLOAD_COPIES;
+        m.software.eager_bytes = seed % 5 ? 100 : 0;
+        try_on(seed, nrank, &m);
+    }
+}
+
 static void small_programs(void **state)
 {
     (void)state;
@@ -356,6 +372,7 @@ static void programs_of_many_ranks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(programs_with_engines_and_without),
         cmocka_unit_test(small_programs),
         cmocka_unit_test(crowded_machines),
         cmocka_unit_test(programs_of_many_ranks),

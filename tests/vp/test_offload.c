@@ -141,6 +141,44 @@ static void without_an_engine_they_wait_for_the_end_of_computing(void **state)
     }
 }
 
+/* Rank 0 is woken by the end of a large send, sends another one, computes for 10 us, and goes on
+ * with many short pieces with calls in between before anything else happens. */
+static void pieces(struct comm *c, void *context)
+{
+    struct comm_request r[2] = {{0}, {0}}, other[20] = {{0}};
+    char data[2][LARGE] = {{0}}, small[8] = {0};
+    (void)context;
+    if (comm_rank(c) == 1) {
+        for (int i = 0; i < 2; i++) comm_irecv(c, 0, TAG, data[i], LARGE, &r[i]);
+        comm_waitall(c, 2, r);
+        for (int i = 0; i < 20; i++) comm_send(c, 0, TAG, small, 8);
+        return;
+    }
+    comm_isend(c, 1, TAG, data[0], LARGE, &r[0]);
+    comm_wait(c, &r[0]);
+    comm_isend(c, 1, TAG, data[1], LARGE, &r[1]);
+    compute(c, 10);
+    for (int i = 0; i < 20; i++) {
+        comm_irecv(c, 1, TAG, small, 8, &other[i]);
+        compute(c, 1);
+    }
+    comm_wait(c, &r[1]);
+    comm_waitall(c, 20, other);
+}
+
+/* Software that takes no time: the first answer is there at 0.4 + 0.5 + 0.4 us. The second one
+ * comes while rank 0 computes, until 11.3 us; its data are there 1.399 us later. What is kept of
+ * that long piece must outlast twenty others. */
+static void long_computing_is_not_forgotten(void **state)
+{
+    (void)state;
+    struct machine_spec m = pair(OFFLOAD_NONE, 100);
+    m.network.level = LEVEL_LINK;
+    m.software.send_overhead = m.software.recv_overhead = 0;
+    m.software.send_copy = m.software.recv_copy = 0;
+    assert_ends(&m, pieces, NULL, 31300000, 12699000);
+}
+
 /* --- copies ----------------------------------------------------------------------------------- */
 
 /* Its copy of 1 us is done before the answer to the request of 2 us comes, at 3.3: the data are
@@ -164,15 +202,27 @@ static void two(struct comm *c, void *context)
     }
 }
 
-/* The processor is free at 4 us. The engine copies from 2 to 6 and from 6 to 10 us; the messages
- * are there at 10.399 and 14.399 us, and copied 8 us later; 3 us of the receiver each. Its own
- * copies would cost the sender 12 us, and the receiver 22 in all. */
+/* 3 ns a byte sent. The processor is free at 4 us. The engine copies from 2 to 14 and from 14 to 26
+ * us; the messages are there at 18.399 and 30.399 us, and copied 8 us later; 3 us of the receiver
+ * each. Own copies keep the sender until 28 us, and the receiver for 11 us each. */
 static void an_engine_makes_one_copy_after_the_other(void **state)
 {
     (void)state;
-    const struct machine_spec engine = pair(OFFLOAD_COPIES, -1), none = pair(OFFLOAD_NONE, -1);
-    assert_ends(&engine, two, NULL, 4 * US, 22399000 + 3 * US);
-    assert_ends(&none, two, NULL, 12 * US, 10399000 + 22 * US);
+    struct machine_spec engine = pair(OFFLOAD_COPIES, -1), none = pair(OFFLOAD_NONE, -1);
+    engine.software.send_copy = none.software.send_copy = 3e-9;
+    assert_ends(&engine, two, NULL, 4 * US, 38399000 + 3 * US);
+    assert_ends(&none, two, NULL, 28 * US, 32399000 + 11 * US);
+}
+
+/* A copy of 10 us, from 2 to 12 us, is done long after the answer has come: the data are there at
+ * 13.399 us, copied at 15.399, and received at 18.399. */
+static void data_wait_for_their_copy(void **state)
+{
+    (void)state;
+    struct machine_spec m = pair(OFFLOAD_COPIES, 100);
+    bool call = false;
+    m.software.send_copy = 10e-9;
+    assert_ends(&m, large, &call, 22 * US + 3 * US, 18399000 + 2 * US);
 }
 
 static void a_kernel_makes_its_copies_itself(void **state)
@@ -281,6 +331,8 @@ int main(void)
         cmocka_unit_test(without_an_engine_they_wait_for_the_end_of_computing),
         cmocka_unit_test(an_engine_copies_during_the_handshake),
         cmocka_unit_test(an_engine_makes_one_copy_after_the_other),
+        cmocka_unit_test(data_wait_for_their_copy),
+        cmocka_unit_test(long_computing_is_not_forgotten),
         cmocka_unit_test(a_kernel_makes_its_copies_itself),
         cmocka_unit_test(engines_never_make_such_a_program_slower),
     };
