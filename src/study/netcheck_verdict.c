@@ -31,7 +31,8 @@ static bool breaks_stated(const struct netcheck_row *row, enum network_level lev
     const struct netcheck_answer *x = &row->answer[level];
     const struct netcheck_accuracy *s = netcheck_accuracy_of(row, level);
     double slack = rounding(row);
-    if (x->error < s->low - slack || x->error > s->high + slack)
+    /* What is no number is within no limits. */
+    if (!(x->error >= s->low - slack && x->error <= s->high + slack))
         return say(why, row, "error", x->error, s->low, s->high);
     if (!row->compared) return false;
     /* Where every arrival is stated to be exact, one that differs is enough: no rounding is
@@ -60,7 +61,7 @@ bool netcheck_row_fails(const struct netcheck_row *row, enum network_level level
     }
     if (row->expect_deadlock) return false;
     if (within < 0) return breaks_stated(row, level, why);
-    return fabs(x->error) > within + rounding(row) &&
+    return !(fabs(x->error) <= within + rounding(row)) &&
            say(why, row, "error", x->error, -within, within);
 }
 

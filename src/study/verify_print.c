@@ -182,7 +182,8 @@ static void print_cell(FILE *out, const struct verify_report *r, const struct ma
                     strcmp(row->quantity, column->quantity) == 0 &&
                     row->verdict != VERIFY_NOT_APPLICABLE;
         /* The measure is the usual one, so that the column compares with `best library`. */
-        if (here) largest = fmax(largest, row->plain);
+        /* An answer that is no number is the worst of all: fmax would pass over it. */
+        if (here && !(largest > row->plain) && !isnan(largest)) largest = row->plain;
     }
     if (largest < 0)
         fprintf(out, " - |");

@@ -145,6 +145,7 @@ static void rows_that_fulfil_conditions_stay(void **state)
     keeps("time=200 ms|0.5", "25");
     keeps("n>8;level!=packet", "25");
     keeps("id>0", "12345");
+    keeps("time=0.2000000001", "2"); /* as many digits as somebody types */
 }
 
 static void refuses(const char *text, enum err_kind kind, const char *told)
@@ -168,6 +169,7 @@ static void conditions_that_cannot_be_are_refused(void **state)
     refuses("levl=link", ERR_USAGE, "did you mean 'level'");
     refuses("level<3", ERR_USAGE, "its values are words");
     refuses("n<many", ERR_USAGE, "many");
+    refuses("n<inf", ERR_USAGE, "inf");
     refuses("time<3 MB", ERR_USAGE, "3 MB");
     refuses("n=9", ERR_NO_INPUT, "its values are: 8; 16; (none); 64");
     refuses("n>64", ERR_NO_INPUT, "no row fulfils");
@@ -290,6 +292,9 @@ static void rows_of_one_place_are_a_mean_with_its_range(void **state)
     assert_true(d.p.band);
     assert_string_equal(d.p.differ.s, "hop_rate, rate");
     drop(&d);
+    draw(&d, "n,rates,rate,time\n8,1,5,1\n8,2,6,4\n8,3,7,1\n", "n", NULL, "time", "");
+    assert_string_equal(d.p.differ.s, "rates, rate");
+    drop(&d);
 }
 
 /* Repetitions of one run: Student's interval. Of 1, 2, 3: mean 2, s = 1, t(2) = 4.303. */
@@ -297,14 +302,14 @@ static void repetitions_have_an_interval(void **state)
 {
     (void)state;
     struct drawn d;
-    static const char text[] = "n,config_hash,time\n8,a,1\n8,a,2\n8,a,3\n9,a,7\n9,b,8\n";
+    static const char text[] = "n,config_hash,time\n8,a,1\n8,a,2\n8,a,3\n9,a,7\n9,b,8\n10,a,5\n";
     *(&d) = (struct drawn){0};
     err_clear(&d.e);
     make_sheet(&d.sheet, text);
     d.sheet.runs = true;
     d.axes = (struct plot_axes){.x = 0, .y = -1, .value = 2, .by_given = true};
     assert_true(plot_points_make(&d.p, &d.sheet, &d.axes, &d.e));
-    assert_int_equal(d.p.n, 2);
+    assert_int_equal(d.p.n, 3);
     const double half = 4.303 / sqrt(3);
     assert_true(fabs(d.p.at[0].low - (2 - half)) < 1e-12);
     assert_true(fabs(d.p.at[0].high - (2 + half)) < 1e-12);
@@ -356,6 +361,25 @@ static void columns_are_added_until_curves_are_told_apart(void **state)
     drop(&d);
 }
 
+/* A column of more values than a legend holds is a sample; what all rows share is not named. */
+static void legends_name_what_tells_curves_apart(void **state)
+{
+    (void)state;
+    struct drawn d;
+    char text[2000] = "n,sample,level,time\n";
+    for (int i = 0; i < 25; i++) snprintf(text + strlen(text), 40, "8,s%d,link,%d\n", i, i);
+    draw(&d, text, "n", NULL, "time", NULL);
+    assert_true(d.made);
+    assert_int_equal(d.axes.nby, 0);
+    assert_int_equal(d.p.n, 1);
+    assert_string_equal(d.p.differ.s, "sample");
+    drop(&d);
+    draw(&d, text, "n", NULL, "time", "level");
+    assert_int_equal(d.p.nseries, 1);
+    assert_string_equal(d.p.series[0], "");
+    drop(&d);
+}
+
 static void a_curve_upon_another_is_told(void **state)
 {
     (void)state;
@@ -370,6 +394,11 @@ static void a_curve_upon_another_is_told(void **state)
     assert_string_equal(d.p.series[2], "c = a within 0.4 %");
     assert_string_equal(d.p.series[3], "d");
     assert_string_equal(d.p.series[4], "e"); /* it ends alone */
+    drop(&d);
+    /* one that lies on a hidden curve alone can be seen beside the first */
+    draw(&d, "n,level,time\n1,a,100\n1,b,100.4\n1,c,100.8\n", "n", NULL, "time", "level");
+    assert_string_equal(d.p.series[1], "b = a within 0.4 %");
+    assert_string_equal(d.p.series[2], "c");
     drop(&d);
 }
 
@@ -487,6 +516,7 @@ int main(void)
         cmocka_unit_test(repetitions_have_an_interval),
         cmocka_unit_test(a_missing_value_is_no_value_of_a_curve),
         cmocka_unit_test(columns_are_added_until_curves_are_told_apart),
+        cmocka_unit_test(legends_name_what_tells_curves_apart),
         cmocka_unit_test(a_curve_upon_another_is_told),
         cmocka_unit_test(too_many_curves_become_panels_or_are_refused),
         cmocka_unit_test(nothing_to_draw_is_told),

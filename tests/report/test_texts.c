@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/random.h"
 #include "base/text.h"
@@ -245,6 +246,7 @@ static void titles_are_first_sentences(void **state)
     about(folder, "", "", "");
     /* too long for a line: cut before a clause, else before a word */
 #define FIFTY "aaaaaaaaa bbbbbbbbb ccccccccc ddddddddd eeeeeeeee "
+    about(folder, "-- " FIFTY "x, " FIFTY "y.\n", FIFTY "x, " FIFTY "y", "");
     about(folder, "-- " FIFTY "f; " FIFTY "g, " FIFTY "h.\n", FIFTY "f", "");
     about(folder, "-- " FIFTY "f, " FIFTY FIFTY "h.\n", FIFTY "f", "");
     about(folder, "-- " FIFTY FIFTY FIFTY "h.\n", FIFTY FIFTY "aaaaaaaaa ...", "");
@@ -290,6 +292,9 @@ static void pictures_are_whole_or_not_there(void **state)
         assert_non_null(strstr(e.text, "a.svg"));
     }
     images_remove(folder, "a");
+    char path[500];
+    assert_int_equal(access(scratch_path(path, sizeof path, folder, "a.png"), F_OK), -1);
+    assert_int_equal(access(scratch_path(path, sizeof path, folder, "a.svg"), F_OK), -1);
     err_clear(&e);
     assert_false(images_check(folder, "a", &e));
     images_remove(folder, "a"); /* again: nothing is there */
