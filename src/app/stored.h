@@ -24,7 +24,7 @@ bool stored_note(struct store *s, const char *key, char value[65], struct err *e
 /* stored_is: whether the note `key` is `hex`; a database that cannot be read has none. */
 bool stored_is(struct store *s, const char *key, const char *hex);
 
-/* stored_keep: the note `key` becomes `text`. False with *e set, also when there is one already. */
+/* stored_keep: the note `key` becomes `text`, in place of an older one. False as store_insert. */
 bool stored_keep(struct store *s, const char *key, const char *text, struct err *e);
 
 #endif

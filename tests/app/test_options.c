@@ -412,6 +412,8 @@ static void rates_are_rising_and_each_once(void **state)
             assert_true(k == 0 || o.rate[k] > o.rate[k - 1]);
         }
     }
+    assert_true(take_load("--rates 0.1:0.3:0.1", &o, &e)); /* 0.1 + 2 x 0.1 is above 0.3 */
+    assert_true(o.nrate == 3 && o.rate[2] == 0.3);
     assert_true(take_load("--rates 0.2:0.39", &o, &e)); /* twenty without a step */
     assert_int_equal(o.nrate, 20);
     assert_true(o.rate[0] == 0.2 && fabs(o.rate[1] - 0.21) < 1e-12 && o.rate[19] == 0.39);

@@ -344,6 +344,7 @@ static void refinement_goes_on_while_corrections_shrink(void **state)
             const struct many_ranks_result m = many_ranks_run(P, refine, &c);
             assert_int_equal(m.blocked, 0);
             assert_int_equal(c.done, cases[i].done);
+            if (cases[i].most == 0) assert_int_equal(m.messages, 0);
             if (!(c.left == cases[i].left) && !isnan(cases[i].left))
                 fail_msg("case %zu: %g left", i, c.left);
         }

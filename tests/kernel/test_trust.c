@@ -256,6 +256,10 @@ static void settings_may_forbid_refinements(void **state)
     assert_true(trust_refine(&spec, &chain, &poor));
     assert_int_equal(spec.kernel.inner_refinements, 20);
     assert_false(trust_refine(&spec, &chain, &poor));
+    /* residuals in twice the digits need no outer refinement */
+    spec.kernel.inner_refinements = 4, spec.kernel.outer_refinements = 0;
+    assert_true(trust_refine(&spec, &chain, &poor));
+    assert_true(spec.kernel.inner_refinements == 20 && spec.kernel.outer_refinements == 0);
 }
 
 /* n^2 beyond a hundred bodies (forces: n), the digits of the precision, and no trust above 1e-2. */
