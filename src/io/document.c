@@ -25,12 +25,15 @@ const struct node *document_need(const struct node *map, const char *key, const 
     return found;
 }
 
-/* One number is a list of one, so that the messages are the same. */
+/* As if it were the one entry of a list, so that the messages are the same; but [1] is a list. */
 bool document_number(const struct node *map, const char *key, const char *path, double *x,
                      struct err *e)
 {
     const struct node *node = document_need(map, key, path, e);
-    return node && document_flat(node, key, path, x, 1, e);
+    if (!node) return false;
+    if (node->kind == NODE_LIST)
+        return err_set_at(e, ERR_DATA, path, node->line, "'%s' must be a number, not a list", key);
+    return document_flat(node, key, path, x, 1, e);
 }
 
 /* Exactly n: what is too long is as wrong as what is too short. */
@@ -43,7 +46,11 @@ bool document_numbers(const struct node *map, const char *key, const char *path,
         return err_set_at(e, ERR_DATA, path, node->line,
                           "'%s' must be a list of %d numbers; it has %d", key, n,
                           node->kind == NODE_LIST ? node->count : 0);
-    /* n entries may still be lists themselves, or texts */
+    /* lists among the entries could make up for each other: [[1, 2], []] has two of both */
+    for (const struct node *c = node->child; c; c = c->next)
+        if (c->kind == NODE_LIST)
+            return err_set_at(e, ERR_DATA, path, c->line, "'%s' must hold numbers, not lists", key);
+    /* n entries may still be texts */
     return document_flat(node, key, path, x, n, e);
 }
 

@@ -34,7 +34,8 @@ struct level {
 
 struct builder {
     const struct form *form;
-    const char *path;
+    const char *path, *data; /* the file and its text (size bytes) */
+    size_t size;
     struct arena *arena;
     struct err *e;
     struct node *slab;
@@ -50,6 +51,15 @@ static bool refuse(struct builder *b, int line, const char *what)
     return err_set_at(b->e, ERR_DATA, b->path, line, "%s", what);
 }
 
+/* The line of a byte of the file. libyaml reads ahead: where it stands in a line is not where a
+ * wrong byte is. */
+static int line_at(const struct builder *b, size_t offset)
+{
+    int line = 1;
+    for (size_t i = 0; i < offset && i < b->size; i++) line += b->data[i] == '\n';
+    return line;
+}
+
 /* libyaml's own complaint, with the line where it arose. */
 static bool refuse_syntax(struct builder *b, const yaml_parser_t *p)
 {
@@ -58,7 +68,7 @@ static bool refuse_syntax(struct builder *b, const yaml_parser_t *p)
         return err_set(b->e, ERR_INTERNAL, "out of memory reading %s", b->path);
     /* a reader's error has no problem_mark: what is wrong are bytes, not the structure */
     if (p->error == YAML_READER_ERROR)
-        return err_set_at(b->e, ERR_DATA, b->path, (int)p->mark.line + 1,
+        return err_set_at(b->e, ERR_DATA, b->path, line_at(b, p->problem_offset),
                           "not %s: not a text file in UTF-8", b->form->expected);
     return err_set_at(b->e, ERR_DATA, b->path, (int)p->problem_mark.line + 1, "not %s: %s%s%s",
                       b->form->expected, problem, p->context ? " " : "",
@@ -277,7 +287,8 @@ static struct node *parse(const struct form *form, const char *data, size_t size
                           struct arena *a, struct err *e)
 {
     /* the parser is given back whatever happens: the tree has copies of all texts */
-    struct builder b = {.form = form, .path = path, .arena = a, .e = e};
+    struct builder b = {
+        .form = form, .path = path, .data = data, .size = size, .arena = a, .e = e};
     yaml_parser_t parser;
     if (size > form->bytes) return refuse_size(form, path, e), NULL;
     if (!yaml_parser_initialize(&parser))
