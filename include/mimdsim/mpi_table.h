@@ -366,8 +366,7 @@ struct mpi_functions {
     const int sources[], const int *sourceweights, int outdegree, const int destinations[],
     const int *destweights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
     int (*dist_graph_neighbors)(struct mpi_rank *self, MPI_Comm comm, int maxindegree,
-    int sources[], int sourceweights[], int maxoutdegree, int destinations[],
-    int destweights[]);
+    int sources[], int *sourceweights, int maxoutdegree, int destinations[], int *destweights);
     int (*dist_graph_neighbors_count)(struct mpi_rank *self, MPI_Comm comm, int *indegree,
     int *outdegree, int *weighted);
     int (*comm_create_keyval)(struct mpi_rank *self,
@@ -705,7 +704,7 @@ int mpi_graph_neighbors_count(struct mpi_rank *self, MPI_Comm comm, int rank, in
 int mpi_graphdims_get(struct mpi_rank *self, MPI_Comm comm, int *nnodes, int *nedges);
 int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const int sources[], const int degrees[], const int destinations[], const int *weights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
 int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int indegree, const int sources[], const int *sourceweights, int outdegree, const int destinations[], const int *destweights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
-int mpi_dist_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int maxindegree, int sources[], int sourceweights[], int maxoutdegree, int destinations[], int destweights[]);
+int mpi_dist_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int maxindegree, int sources[], int *sourceweights, int maxoutdegree, int destinations[], int *destweights);
 int mpi_dist_graph_neighbors_count(struct mpi_rank *self, MPI_Comm comm, int *indegree, int *outdegree, int *weighted);
 int mpi_comm_create_keyval(struct mpi_rank *self, MPI_Comm_copy_attr_function *comm_copy_attr_fn, MPI_Comm_delete_attr_function *comm_delete_attr_fn, int *comm_keyval, void *extra_state);
 int mpi_comm_free_keyval(struct mpi_rank *self, int *comm_keyval);

@@ -47,23 +47,23 @@ static void place_of(int ndim, const int *dim, int rank, int *coordinate)
 /* One dimension changes, so the rank moves by the number of places that lie in one step
  * of it. Coordinates are not looked at again: halo exchanges call this once for each
  * neighbour. */
-int mpi_cart_shifted(const struct mpi_topology *t, int d, int by)
+int mpi_cart_shifted(const struct mpi_topology *t, int d, int64_t by)
 {
-    int below = 1, n = t->dim[d], at = t->coordinate[d] + by;
+    int below = 1, n = t->dim[d], own = 0;
+    int64_t at = t->coordinate[d] + by;
     if (at < 0 || at >= n) {
         if (!t->period[d]) return MPI_PROC_NULL;
         at = (at % n + n) % n;
     }
-    int own = 0;
     for (int k = 0; k < t->ndim; k++) own = own * t->dim[k] + t->coordinate[k];
     for (int k = d + 1; k < t->ndim; k++) below *= t->dim[k];
-    return own + (at - t->coordinate[d]) * below;
+    return own + (int)(at - t->coordinate[d]) * below;
 }
 
 /* --- making --- */
 
-/* A grid may be smaller than the communicator, never larger (section 8.5.1). 64 bits,
- * because a product of dimensions may pass an int before it is refused. */
+/* A grid may be smaller than the communicator, never larger (section 8.5.1). A product of
+ * dimensions may pass even 64 bits before it is refused: then it stays at their largest. */
 static int grid_size(struct mpi_rank *r, struct mpi_comm *c, int ndims, const int *dims,
                      int64_t *size)
 {
@@ -72,7 +72,7 @@ static int grid_size(struct mpi_rank *r, struct mpi_comm *c, int ndims, const in
     for (int d = 0; d < ndims; d++) {
         if (dims[d] < 1)
             return mpi_error(r, c, MPI_ERR_DIMS, "dimension %d has %d places", d, dims[d]);
-        *size *= dims[d];
+        if (__builtin_mul_overflow(*size, dims[d], size)) *size = INT64_MAX;
     }
     if (*size <= c->size) return MPI_SUCCESS;
     return mpi_error(r, c, MPI_ERR_TOPOLOGY, "a grid of %lld places for %d ranks", (long long)*size,
@@ -99,12 +99,11 @@ static struct mpi_topology *grid(struct mpi_rank *r, int ndims, const int *dims,
 int mpi_cart_create(struct mpi_rank *self, MPI_Comm comm_old, int ndims, const int dims[],
                     const int periods[], int reorder, MPI_Comm *comm_cart)
 {
-    struct mpi_comm *c = mpi_comm_of(self, comm_old);
+    struct mpi_comm *c = mpi_topology_base(self, comm_old);
     int64_t size;
     static const int nothing;
     (void)reorder;
     if (!c) return self->code;
-    if (c->remote) return mpi_error(self, c, MPI_ERR_COMM, "an intercommunicator has no topology");
     /* The program may pass NULL for arrays without elements, which grid() must not copy
      * from. */
     if (ndims == 0) dims = periods = &nothing;
@@ -206,7 +205,7 @@ int mpi_cart_shift(struct mpi_rank *self, MPI_Comm comm, int direction, int disp
     if (direction < 0 || direction >= t->ndim)
         return mpi_error(self, c, MPI_ERR_DIMS, "direction %d of %d dimensions", direction,
                          t->ndim);
-    *rank_source = mpi_cart_shifted(t, direction, -disp);
+    *rank_source = mpi_cart_shifted(t, direction, -(int64_t)disp);
     *rank_dest = mpi_cart_shifted(t, direction, disp);
     return MPI_SUCCESS;
 }

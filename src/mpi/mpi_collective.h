@@ -62,7 +62,7 @@ void mpi_intercomm_run(struct mpi_rank *r, const struct mpi_collective *x);
 struct mpi_type *mpi_block_type(struct mpi_rank *r, MPI_Datatype handle, int64_t count);
 
 /* mpi_neighbor_edges: how many blocks a rank of a topology receives and sends. */
-void mpi_neighbor_edges(struct mpi_rank *r, const struct mpi_comm *c, int *nin, int *nout);
+void mpi_neighbor_edges(const struct mpi_comm *c, int *nin, int *nout);
 
 /* mpi_collective_call: by the algorithm that the machine's rules choose; `irregular` where only the
  * root has counts. */

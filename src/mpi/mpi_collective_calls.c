@@ -82,7 +82,11 @@ static int check_types(struct mpi_rank *r, const struct mpi_collective *x, struc
 static int check_blocks(struct mpi_rank *r, const struct mpi_collective *x)
 {
     int nin = x->comm->remote ? x->comm->remote->size : x->comm->size, nout = nin;
-    if (x->what >= WHAT_NEIGHBOR_ALLGATHER) mpi_neighbor_edges(r, x->comm, &nin, &nout);
+    if (x->what >= WHAT_NEIGHBOR_ALLGATHER) {
+        if (!x->comm->topology)
+            return mpi_error(r, x->comm, MPI_ERR_TOPOLOGY, "the communicator has no topology");
+        mpi_neighbor_edges(x->comm, &nin, &nout);
+    }
     int code = check_counts(r, x->comm, x->send_counts, nout);
     if (code == MPI_SUCCESS) code = check_counts(r, x->comm, x->recv_counts, nin);
     if (code == MPI_SUCCESS) code = check_types(r, x, x->send_counts, x->send_types, nout);

@@ -77,7 +77,9 @@ int mpi_comm_get_name(struct mpi_rank *self, MPI_Comm comm, char *comm_name, int
     if (c) name = c->name ? c->name : "";
     if (c && !c->name && c == self->world_comm) name = "MPI_COMM_WORLD";
     if (c && !c->name && c == self->self_comm) name = "MPI_COMM_SELF";
-    *resultlen = snprintf(comm_name, MPI_MAX_OBJECT_NAME, "%s", name);
+    /* Of a name that is too long the length is that of what is there. */
+    snprintf(comm_name, MPI_MAX_OBJECT_NAME, "%s", name);
+    *resultlen = (int)strlen(comm_name);
     return MPI_SUCCESS;
 }
 

@@ -14,7 +14,7 @@
 int mpi_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int nnodes, const int indx[],
                      const int edges[], int reorder, MPI_Comm *comm_graph)
 {
-    struct mpi_comm *c = mpi_comm_of(self, comm_old);
+    struct mpi_comm *c = mpi_topology_base(self, comm_old);
     (void)reorder;
     if (!c) return self->code;
     if (nnodes < 0 || nnodes > c->size)
@@ -131,14 +131,25 @@ static int check_ranks(struct mpi_rank *r, struct mpi_comm *c, const int *rank, 
     return MPI_SUCCESS;
 }
 
-/* Weights as the topology keeps them: NULL for none, one element that nobody reads for
- * empty lists. MPI_UNWEIGHTED and MPI_WEIGHTS_EMPTY are fixed addresses of the ABI and
- * never read. */
+/* A list of n ranks and its weights. */
+static int check_list(struct mpi_rank *r, struct mpi_comm *c, const int *rank, int n,
+                      const int *weight)
+{
+    if (n < 0) return mpi_error(r, c, MPI_ERR_ARG, "%d edges", n);
+    /* NULL is none of the standard's two ways to leave weights out. */
+    if (n > 0 && !weight) return mpi_error(r, c, MPI_ERR_ARG, "the list of weights is NULL");
+    return check_ranks(r, c, rank, n);
+}
+
+/* Weights as the topology keeps them: NULL for none, one element more than edges, since
+ * NULL means that there are none. MPI_UNWEIGHTED and MPI_WEIGHTS_EMPTY are fixed addresses of the
+ * ABI and never read. */
 static int *weights(struct mpi_rank *r, const int *from, int n)
 {
     if (from == MPI_UNWEIGHTED) return NULL;
-    if (from == MPI_WEIGHTS_EMPTY) n = 0;
-    return n && from ? mpi_topology_ints(r, from, n) : mpi_take_zero(r->world, sizeof(int));
+    if (n > 0 && from != MPI_WEIGHTS_EMPTY) return mpi_topology_ints(r, from, n);
+    /* Edges without the weights that they should have get zeros: copies are as long as the list. */
+    return mpi_take_zero(r->world, (n + 1) * (int64_t)sizeof(int));
 }
 
 int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int indegree,
@@ -146,11 +157,11 @@ int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int
                                    const int destinations[], const int destweights[], MPI_Info info,
                                    int reorder, MPI_Comm *comm_dist_graph)
 {
-    struct mpi_comm *c = mpi_comm_of(self, comm_old);
+    struct mpi_comm *c = mpi_topology_base(self, comm_old);
     (void)info, (void)reorder;
     if (!c) return self->code;
-    int code = check_ranks(self, c, sources, indegree);
-    if (code == MPI_SUCCESS) code = check_ranks(self, c, destinations, outdegree);
+    int code = check_list(self, c, sources, indegree, sourceweights);
+    if (code == MPI_SUCCESS) code = check_list(self, c, destinations, outdegree, destweights);
     if (code != MPI_SUCCESS) return code;
     /* Each rank names all its edges, so nothing need be told to others. Both ends must
      * name an edge; whether they do is not checked, as section 8.5.4 leaves it to the
@@ -217,15 +228,21 @@ int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const
                           const int degrees[], const int destinations[], const int weight[],
                           MPI_Info info, int reorder, MPI_Comm *comm_dist_graph)
 {
-    struct mpi_comm *c = mpi_comm_of(self, comm_old);
-    int nown = 0, total, code = c ? check_ranks(self, c, sources, n) : self->code;
+    struct mpi_comm *c = mpi_topology_base(self, comm_old);
+    int nown = 0, total,
+        code = c ? check_list(self, c, sources, n, MPI_UNWEIGHTED) : self->code;
     (void)info, (void)reorder;
     if (code != MPI_SUCCESS) return code;
     /* Checks come before the first message. Degrees say how many destinations belong to
      * each source. */
     bool weighted = weight != MPI_UNWEIGHTED;
-    for (int i = 0; i < n; i++) nown += degrees[i];
-    code = check_ranks(self, c, destinations, nown);
+    for (int i = 0; i < n; i++) {
+        if (degrees[i] < 0)
+            return mpi_error(self, c, MPI_ERR_ARG, "%d edges from rank %d", degrees[i],
+                             sources[i]);
+        nown += degrees[i];
+    }
+    code = check_list(self, c, destinations, nown, weight);
     if (code != MPI_SUCCESS) return code;
     struct edge *own = mpi_take(self->world, (nown + 1) * (int64_t)sizeof *own);
     for (int i = 0, k = 0; i < n; i++)

@@ -212,6 +212,7 @@ int mpi_group_difference(struct mpi_rank *self, MPI_Group group1, MPI_Group grou
 static int choose(struct mpi_rank *r, struct mpi_group *g, int n, const int *ranks, bool named,
                   MPI_Group *newgroup)
 {
+    if (n < 0) return mpi_error(r, NULL, MPI_ERR_ARG, "%d ranks", n);
     char *mark = mpi_take_zero(r->world, g->size + 1);
     int m = 0, *list = mpi_take(r->world, (g->size + 1) * (int64_t)sizeof *list);
     for (int i = 0; i < n; i++) {
@@ -255,15 +256,17 @@ static int choose_ranges(struct mpi_rank *r, MPI_Group group, int n, int ranges[
 {
     struct mpi_group *g = mpi_group_of(r, group);
     if (!g) return r->code;
+    if (n < 0) return mpi_error(r, NULL, MPI_ERR_ARG, "%d ranges", n);
     /* A range's ranks are listed, and the list is chosen: both rules are written once. A
      * list longer than the group names a rank twice, so it need not go on. */
     int m = 0, *ranks = mpi_take(r->world, (g->size + 1) * (int64_t)sizeof *ranks);
     for (int i = 0; i < n; i++) {
         int first = ranges[i][0], last = ranges[i][1], step = ranges[i][2];
         bool bad = step == 0;
-        for (int k = first; !bad && (step > 0 ? k <= last : k >= last); k += step) {
+        /* wider than an int: a rank and a step may be more than one holds */
+        for (int64_t k = first; !bad && (step > 0 ? k <= last : k >= last); k += step) {
             bad = m == g->size || k < 0 || k >= g->size;
-            if (!bad) ranks[m++] = k;
+            if (!bad) ranks[m++] = (int)k;
         }
         if (bad) {
             mpi_give(r->world, ranks);

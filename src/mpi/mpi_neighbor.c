@@ -11,10 +11,9 @@ struct neighbours {
     int nin, nout, *in, *out;
 };
 
-void mpi_neighbor_edges(struct mpi_rank *r, const struct mpi_comm *c, int *nin, int *nout)
+void mpi_neighbor_edges(const struct mpi_comm *c, int *nin, int *nout)
 {
     const struct mpi_topology *t = c->topology;
-    if (!t) mpi_fail(r, "the communicator has no topology");
     if (t->kind == MPI_CART) *nin = *nout = 2 * t->ndim;
     else if (t->kind == MPI_DIST_GRAPH) *nin = t->nin, *nout = t->nout;
     else *nin = *nout = t->index[c->rank] - (c->rank ? t->index[c->rank - 1] : 0);
@@ -27,7 +26,7 @@ static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm
 {
     const struct mpi_topology *t = c->topology;
     struct neighbours n = {0};
-    mpi_neighbor_edges(r, c, &n.nin, &n.nout);
+    mpi_neighbor_edges(c, &n.nin, &n.nout);
     /* One block for both lists; whoever asked gives it back. */
     n.in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *n.in);
     n.out = n.in + n.nin;

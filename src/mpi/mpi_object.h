@@ -88,6 +88,7 @@ struct mpi_type {
     enum mpi_class class;
     bool dense; /* size bytes one behind the other from lb = 0, and the next element right behind */
     bool committed;
+    bool marked; /* the program set the bounds, of it or of a part: other parts do not count then */
     int64_t size, lb, extent, true_lb, true_extent; /* [B] */
     int64_t basics, align;                          /* basic elements; of a struct's end [B] */
     int npiece;

@@ -104,8 +104,9 @@ int mpi_pack(struct mpi_rank *self, const void *inbuf, MPI_Count incount, MPI_Da
     if (!t) return self->code;
     if (incount < 0)
         return mpi_error(self, c, MPI_ERR_COUNT, "count %lld is negative", (long long)incount);
-    int64_t bytes = incount * t->size;
-    if (*position < 0 || *position + bytes > outsize)
+    /* compared without a sum, which may be larger than any number */
+    int64_t bytes = mpi_type_bytes(incount, t->size);
+    if (*position < 0 || bytes > outsize || *position > outsize - bytes)
         return mpi_error(self, c, MPI_ERR_TRUNCATE, "%lld bytes at %lld do not fit in %lld",
                          (long long)bytes, (long long)*position, (long long)outsize);
     mpi_pack_bytes((char *)outbuf + *position, inbuf, incount, t);
@@ -123,8 +124,9 @@ int mpi_unpack(struct mpi_rank *self, const void *inbuf, MPI_Count insize, MPI_C
     if (!t) return self->code;
     if (outcount < 0)
         return mpi_error(self, c, MPI_ERR_COUNT, "count %lld is negative", (long long)outcount);
-    int64_t bytes = outcount * t->size;
-    if (*position < 0 || *position + bytes > insize)
+    /* compared without a sum, which may be larger than any number */
+    int64_t bytes = mpi_type_bytes(outcount, t->size);
+    if (*position < 0 || bytes > insize || *position > insize - bytes)
         return mpi_error(self, c, MPI_ERR_TRUNCATE, "%lld bytes at %lld are not in %lld",
                          (long long)bytes, (long long)*position, (long long)insize);
     mpi_unpack_bytes(outbuf, (const char *)inbuf + *position, bytes, outcount, t);
@@ -139,6 +141,8 @@ int mpi_pack_size(struct mpi_rank *self, MPI_Count incount, MPI_Datatype datatyp
 {
     struct mpi_type *t = mpi_comm_of(self, comm) ? mpi_type_of(self, datatype) : NULL;
     if (!t) return self->code;
-    *size = incount * t->size;
+    if (incount < 0)
+        return mpi_error(self, NULL, MPI_ERR_COUNT, "count %lld is negative", (long long)incount);
+    *size = mpi_type_bytes(incount, t->size);
     return MPI_SUCCESS;
 }

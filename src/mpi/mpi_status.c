@@ -57,7 +57,8 @@ static int64_t elements(int64_t n, const struct mpi_type *t, int64_t *bytes)
     for (int k = 0; k<t->npiece && * bytes> 0; k++) {
         int64_t in_piece = t->piece[k].count * t->piece[k].length, before = *bytes;
         found += elements(in_piece, t->piece[k].of, bytes);
-        if (*bytes == before && in_piece > 0) break; /* less than an element is left */
+        /* less than an element of this piece is left: it is none of the next one's */
+        if (before - *bytes < in_piece * t->piece[k].of->size) break;
     }
     return found;
 }
@@ -81,15 +82,29 @@ int mpi_get_elements_x(struct mpi_rank *self, const MPI_Status *status, MPI_Data
     return mpi_get_elements(self, status, datatype, count);
 }
 
-/* Whole types first, so that the product does not overflow; the rest is a share of one
- * type's bytes, exact where all its basics have one size. */
+/* bytes_of_first: what the first n basic elements of types t take, whatever their sizes. Whole
+ * types first, so that the product does not overflow; then piece by piece. */
+static int64_t bytes_of_first(int64_t n, const struct mpi_type *t)
+{
+    int64_t most = t->basics ? t->basics : 1, bytes = n / most * t->size;
+    n %= most;
+    for (int k = 0; k < t->npiece && n > 0; k++) {
+        const struct mpi_piece *p = &t->piece[k];
+        const int64_t here = p->count * p->length * p->of->basics, some = n < here ? n : here;
+        bytes += bytes_of_first(some, p->of);
+        n -= some;
+    }
+    return bytes;
+}
+
 int mpi_status_set_elements(struct mpi_rank *self, MPI_Status *status, MPI_Datatype datatype,
                             MPI_Count count)
 {
     struct mpi_type *t = mpi_type_of(self, datatype);
     if (!t) return self->code;
-    int64_t n = t->basics ? t->basics : 1;
-    int64_t bytes = count / n * t->size + count % n * t->size / n;
+    if (count < 0)
+        return mpi_error(self, NULL, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
+    int64_t bytes = bytes_of_first(count, t);
     memcpy(status->MPI_internal, &bytes, sizeof bytes);
     return MPI_SUCCESS;
 }

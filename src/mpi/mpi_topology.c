@@ -50,6 +50,16 @@ void mpi_topology_copy(struct mpi_rank *r, const struct mpi_comm *from, struct m
     t->out_weight = mpi_topology_ints(r, f->out_weight, f->nout);
 }
 
+/* Ranks of one group lie to each other somehow, those of two have no common numbers (section
+ * 8.5). */
+struct mpi_comm *mpi_topology_base(struct mpi_rank *r, MPI_Comm comm)
+{
+    struct mpi_comm *c = mpi_comm_of(r, comm);
+    if (!c || !c->remote) return c;
+    r->code = mpi_error(r, c, MPI_ERR_COMM, "an intercommunicator has no topology");
+    return NULL;
+}
+
 struct mpi_topology *mpi_topology_of(struct mpi_rank *r, MPI_Comm comm, int kind,
                                      struct mpi_comm **c)
 {

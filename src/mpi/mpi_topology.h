@@ -19,12 +19,16 @@ struct mpi_topology {
 int mpi_cart_rank_of(const struct mpi_topology *t, const int *coordinate);
 
 /* mpi_cart_shifted: the rank `by` steps along dimension d from the own place. */
-int mpi_cart_shifted(const struct mpi_topology *t, int d, int by);
+int mpi_cart_shifted(const struct mpi_topology *t, int d, int64_t by);
 
 /* mpi_topology_take: an empty topology of a kind. mpi_topology_ints: a copy of n integers, NULL for
  * none. */
 struct mpi_topology *mpi_topology_take(struct mpi_rank *r, int kind);
 int *mpi_topology_ints(struct mpi_rank *r, const int *from, int n);
+
+/* mpi_topology_base: the communicator of which a topology is to be made; NULL with the error
+ * reported, also for an intercommunicator. */
+struct mpi_comm *mpi_topology_base(struct mpi_rank *r, MPI_Comm comm);
 
 /* mpi_topology_of: the communicator's topology of that kind; NULL with the error reported. */
 struct mpi_topology *mpi_topology_of(struct mpi_rank *r, MPI_Comm comm, int kind,

@@ -57,27 +57,32 @@ static void check_reach(struct mpi_rank *r, int64_t bytes)
 /* What bounds are made of; empty until something was put in. */
 struct bounds {
     int64_t low, high, true_low, true_high;
-    bool any;
+    bool any, data, marked; /* any, data: something was put in, something with data */
 };
 
-/* Bounds with and without the gaps that a resized type declares (sections 5.1.7, 5.1.8).
- * An extent may be negative, so a low bound may lie above a high one. */
+/* Bounds that the program has set go before those of data (section 5.1.7): beside a type that has
+ * some, low and high of the others do not count. True bounds are those of data (5.1.8). An extent
+ * may be negative, so a low bound may lie above a high one. */
 static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
 {
     int64_t low = at + of->lb, high = low + of->extent;
     int64_t true_low = at + of->true_lb, true_high = true_low + of->true_extent;
-    if (!b->any || low < b->low) b->low = low;
-    if (!b->any || high > b->high) b->high = high;
-    if (!b->any || true_low < b->true_low) b->true_low = true_low;
-    if (!b->any || true_high > b->true_high) b->true_high = true_high;
+    const bool first = !b->any || (of->marked && !b->marked), counts = of->marked == b->marked;
+    if (first || (counts && low < b->low)) b->low = low;
+    if (first || (counts && high > b->high)) b->high = high;
     b->any = true;
+    b->marked = b->marked || of->marked;
+    if (of->basics == 0) return;
+    if (!b->data || true_low < b->true_low) b->true_low = true_low;
+    if (!b->data || true_high > b->true_high) b->true_high = true_high;
+    b->data = true;
 }
 
 /* The four corners of a piece bound it, whatever the signs of strides and extents. Every
  * block in between lies within these four, because places are linear in both indices. */
 static void include_piece(struct bounds *b, const struct mpi_piece *p)
 {
-    if (p->count == 0 || p->length == 0) return;
+    if (p->count == 0 || p->length == 0 || (p->of->basics == 0 && !p->of->marked)) return;
     int64_t last = mpi_type_bytes(p->count - 1, p->stride),
             end = mpi_type_bytes(p->length - 1, p->of->extent);
     include(b, p->at, p->of);
@@ -109,7 +114,7 @@ void mpi_type_finish(struct mpi_rank *r, struct mpi_type *t)
     t->size = t->basics = 0;
     t->align = 1;
     /* Empty pieces count neither for bounds nor for runs (section 5.1.7 speaks of entries
-     * of the type map, and they have none). */
+     * of the type map, and they have none), but for bounds that were set. */
     for (int i = 0; i < t->npiece; i++) {
         const struct mpi_piece *p = &t->piece[i];
         int64_t n = mpi_type_bytes(p->count, p->length);
@@ -120,7 +125,7 @@ void mpi_type_finish(struct mpi_rank *r, struct mpi_type *t)
         check_reach(r, t->basics);
         /* Section 5.1.6: the extent is rounded up as a C compiler would pad a struct.
          * Only structs do so, so that arrays of elements keep their places. */
-        if (n && p->of->align > t->align) t->align = p->of->align;
+        if (n && p->of->basics && p->of->align > t->align) t->align = p->of->align;
         include_piece(&b, p);
         if (n == 0) continue;
         run = run && p->at == end && is_run(p, &next);
@@ -133,9 +138,10 @@ void mpi_type_finish(struct mpi_rank *r, struct mpi_type *t)
     /* A type without data has all bounds 0. */
     t->lb = b.low;
     t->extent = b.high - b.low;
+    t->marked = b.marked;
     t->true_lb = b.true_low;
     t->true_extent = b.true_high - b.true_low;
-    if (t->combiner == MPI_COMBINER_STRUCT && t->extent % t->align)
+    if (t->combiner == MPI_COMBINER_STRUCT && !t->marked && t->extent % t->align)
         t->extent += t->align - t->extent % t->align;
     t->dense = run && t->lb == 0 && t->extent == t->size;
 }
@@ -376,6 +382,7 @@ int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Cou
     mpi_type_finish(self, t);
     t->lb = lb;
     t->extent = extent;
+    t->marked = true;
     t->dense = of->dense && lb == 0 && extent == t->size;
     *newtype = mpi_handle(t);
     return MPI_SUCCESS;

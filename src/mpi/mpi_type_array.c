@@ -30,6 +30,7 @@ static struct mpi_type *dimension(struct mpi_rank *r, struct mpi_type *of, int64
     /* Finishing set the bounds by what is there; a part of an array has those of the
      * whole, so that the next dimension, or the next element, lies behind all of it. */
     t->lb = 0;
+    t->marked = true;
     t->dense = of->dense && x->first == 0 && x->count == 1 && x->length == whole;
     t->extent = mpi_type_bytes(whole, of->extent);
     mpi_type_remember(r, t, 0, 0, 1);
@@ -74,7 +75,7 @@ int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts
     for (int d = 0; d < ndims; d++) {
         int64_t size = mpi_count_at(array_of_sizes, d), part = mpi_count_at(array_of_subsizes, d);
         int64_t start = mpi_count_at(array_of_starts, d);
-        if (size < 1 || part < 1 || start < 0 || start + part > size)
+        if (size < 1 || part < 1 || start < 0 || start > size - part)
             return mpi_error(self, NULL, MPI_ERR_ARG,
                              "dimension %d: %lld from %lld on is not within 0 .. %lld", d,
                              (long long)part, (long long)start, (long long)size - 1);
@@ -136,8 +137,15 @@ int mpi_type_create_darray(struct mpi_rank *self, int size, int rank, int ndims,
     if (!of) return self->code;
     /* A grid of another size than that of the processes fits nobody. */
     int64_t grid = 1;
-    for (int d = 0; d < ndims; d++) grid *= array_of_psizes[d];
-    if (ndims < 1 || grid != size || rank < 0 || rank >= size)
+    bool fits = ndims > 0;
+    for (int d = 0; d < ndims; d++) {
+        fits = fits && array_of_psizes[d] > 0 && mpi_count_at(array_of_gsizes, d) > 0;
+        if (__builtin_mul_overflow(grid, array_of_psizes[d], &grid)) fits = false;
+    }
+    if (order != MPI_ORDER_C && order != MPI_ORDER_FORTRAN)
+        return mpi_error(self, NULL, MPI_ERR_ARG,
+                         "order %d is neither MPI_ORDER_C nor MPI_ORDER_FORTRAN", order);
+    if (!fits || grid != size || rank < 0 || rank >= size)
         return mpi_error(self, NULL, MPI_ERR_ARG, "rank %d in a grid of %lld processes of %d", rank,
                          (long long)grid, size);
     mpi_type_use(of);

@@ -136,7 +136,9 @@ int mpi_type_get_name(struct mpi_rank *self, MPI_Datatype datatype, char *type_n
     const char *name = "MPI_DATATYPE_NULL";
     if (!t && datatype != MPI_DATATYPE_NULL) return self->code;
     if (t) name = mpi_name_given(self, KIND_TYPE, t, t->name ? t->name : "");
-    *resultlen = snprintf(type_name, MPI_MAX_OBJECT_NAME, "%s", name);
+    /* Of a name that is too long the length is that of what is there. */
+    snprintf(type_name, MPI_MAX_OBJECT_NAME, "%s", name);
+    *resultlen = (int)strlen(type_name);
     return MPI_SUCCESS;
 }
 
