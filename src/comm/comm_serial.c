@@ -11,14 +11,14 @@ static void no_isend(struct comm *c, int dst, int64_t tag, const void *data, int
                      struct comm_request *r)
 {
     (void)tag, (void)data, (void)bytes, (void)r;
-    CHECK(dst < c->size && dst != c->rank);
+    CHECK(dst >= 0 && dst < c->size && dst != c->rank);
 }
 
 static void no_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes,
                      struct comm_request *r)
 {
     (void)tag, (void)buffer, (void)bytes, (void)r;
-    CHECK(src < c->size && src != c->rank);
+    CHECK(src >= 0 && src < c->size && src != c->rank);
 }
 
 static void no_wait(struct comm *c, struct comm_request *r)

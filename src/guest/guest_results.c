@@ -28,10 +28,11 @@ static void grow(struct guest_result *r, int64_t n)
 bool guest_results_put(struct guest_results *r, int output, int64_t first, int64_t n,
                        const double *data, char *why, int size)
 {
-    /* No sum here can wrap: the limit is far below 2^63. */
+    /* The comparison cannot wrap, since the limit is far below 2^63; what the message tells may. */
     if (first < 0 || n < 0 || first > GUEST_MOST_NUMBERS - n) {
         snprintf(why, (size_t)size, "publishes elements %lld to %lld of a result; expected 0 to %d",
-                 (long long)first, (long long)first + n - 1, GUEST_MOST_NUMBERS - 1);
+                 (long long)first, (long long)((uint64_t)first + (uint64_t)n - 1),
+                 GUEST_MOST_NUMBERS - 1);
         return false;
     }
     struct guest_result *to = &r->of[output];

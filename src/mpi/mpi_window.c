@@ -202,8 +202,10 @@ bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value)
     if (keyval == MPI_WIN_CREATE_FLAVOR) p = &w->flavor;
     if (keyval == MPI_WIN_MODEL) p = &w->model;
     if (keyval == MPI_WIN_BASE) p = w->base;
+    /* `value` stays as it is where the keyval is none of these. */
+    if (p == NULL && keyval != MPI_WIN_BASE) return false;
     *(void **)value = p;
-    return p != NULL || keyval == MPI_WIN_BASE;
+    return true;
 }
 
 /* As for communicators and types (section 7.8). */

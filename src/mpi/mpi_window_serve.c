@@ -26,9 +26,12 @@ static char *memory_of(struct mpi_rank *r, const struct mpi_window *w, const str
 {
     /* Of a dynamic window the displacement is an address of the target. */
     if (w->flavor == MPI_WIN_FLAVOR_DYNAMIC) return (char *)(uintptr_t)x->displacement;
-    int64_t at = x->displacement * w->unit, low = at + x->type->true_lb;
-    int64_t high = low + (x->count - 1) * x->type->extent + x->type->true_extent;
+    int64_t at = mpi_type_bytes(x->displacement, w->unit), low = at + x->type->true_lb;
+    int64_t last = mpi_type_bytes(x->count - 1, x->type->extent), high = low + x->type->true_extent;
     char text[200];
+    /* An extent may be negative: then the last element is the lowest. */
+    if (last < 0) low += last;
+    else high += last;
     if (x->count == 0 || (low >= 0 && high <= w->size)) return w->base + at;
     snprintf(text, sizeof text, "rank %d accesses bytes %lld .. %lld of a window of %lld bytes",
              x->origin, (long long)low, (long long)high - 1, (long long)w->size);
@@ -51,7 +54,9 @@ static void combine(struct mpi_rank *r, struct mpi_window *w, const struct mpi_r
     struct work work = {0};
     /* MPI_REPLACE and MPI_NO_OP are operations of one-sided calls alone. */
     if (x->op == mpi_op_of(r, MPI_NO_OP)) return;
-    int64_t bytes = x->count * x->type->size, n = bytes / element->size;
+    int64_t bytes = x->count * x->type->size;
+    if (bytes == 0) return;
+    int64_t n = bytes / element->size;
     if (x->op == mpi_op_of(r, MPI_REPLACE)) {
         mpi_unpack_bytes(memory, x->data, bytes, x->count, x->type);
         return;

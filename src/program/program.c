@@ -22,7 +22,9 @@ double *program_output(const struct program_run *r, int output) { return r->outp
 const double *program_answer(const struct program_run *r, int output, int64_t *n)
 {
     if (r->type->answer != NULL) return r->type->answer(r, output, n);
-    *n = output < PROGRAM_OUTPUTS && r->output[output].x != NULL ? r->output[output].n : 0;
+    const bool there =
+        output >= 0 && output < PROGRAM_OUTPUTS && r->output[output].x != NULL;
+    *n = there ? r->output[output].n : 0;
     return *n > 0 ? r->output[output].x : NULL;
 }
 
@@ -36,7 +38,8 @@ bool program_take(struct program_run *r, int output, int64_t first, int64_t n, c
     const struct comm_output *o = &r->output[output];
     if (first < 0 || n < 0 || first > o->n - n) {
         snprintf(why, (size_t)size, "elements %lld to %lld of output %d, which has %lld",
-                 (long long)first, (long long)(first + n - 1), output, (long long)o->n);
+                 (long long)first, (long long)((uint64_t)first + (uint64_t)n - 1), output,
+                 (long long)o->n); /* numbers from elsewhere: their sum may wrap */
         return false;
     }
     if (n > 0) memcpy(o->x + first, data, (size_t)n * sizeof *data);
