@@ -17,6 +17,8 @@
     X(cmd_plot, "plot", "draw a figure from a database")                                           \
     X(cmd_timeline, "timeline", "show when ranks compute, send and wait: picture, text or trace")  \
     X(cmd_compare, "compare", "compare machines, scenarios, runs or databases")                    \
+    X(cmd_interference, "interference",                                                            \
+      "measure how much longer jobs take beside each other")                                       \
     X(cmd_why, "why", "explain what limits a run, and what would help")                            \
     X(cmd_explain, "explain", "show what a scenario will run and cost")                            \
     X(cmd_check, "check", "validate files without running")                                        \

@@ -246,6 +246,10 @@ static bool read_name(const struct scenario *s, const struct node *job, struct s
                           "at most %d",
                           n->text != NULL ? n->text : "a list or mapping", JOB_NAME - 1);
     /* Those before it: the later one is the mistake. */
+    if (strcmp(n->text, "background") == 0)
+        return err_set_at(e, ERR_DATA, s->path, n->line,
+                          "jobs: name: 'background' is what takes the place of all other jobs; "
+                          "choose another name");
     for (int i = 0; i < s->jobs->n; i++)
         if (strcmp(s->jobs->job[i].name, n->text) == 0)
             return err_set_at(e, ERR_DATA, s->path, n->line,
@@ -311,7 +315,15 @@ bool jobs_file_combine(struct scenario *s, const struct node *words, struct aren
     if (j->line == 0) j->line = words->line;
     /* What --set says takes the place of what the file says. */
     j->combine = 0;
-    if (words->kind != NODE_LIST) return take_word(j, s, words, e);
+    /* --set gives a list as one text, "alone,pairs". */
+    if (words->kind == NODE_TEXT && words->text != NULL) {
+        char *rest = arena_text(a, words->text);
+        for (char *word = strsep(&rest, "[], "); word != NULL; word = strsep(&rest, "[], ")) {
+            const struct node one = {.kind = NODE_TEXT, .line = words->line, .text = word};
+            if (word[0] != '\0' && !take_word(j, s, &one, e)) return false;
+        }
+        return j->combine != 0 || take_word(j, s, words, e);
+    }
     for (const struct node *n = words->child; n != NULL; n = n->next)
         if (!take_word(j, s, n, e)) return false;
     return j->combine != 0 || take_word(j, s, words, e);

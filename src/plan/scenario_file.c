@@ -483,7 +483,8 @@ bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
     if (s->typed) program_file_entitle(s, a), program_file_ranks(s, root, a);
     for (const struct node *n = root->child; n != NULL; n = n->next)
         if (!read_top(&t, n)) return false;
-    return check_axes(s, e) && read_options(s, o, a, e);
+    /* Once more behind the command line, which may say how jobs are combined. */
+    return check_axes(s, e) && read_options(s, o, a, e) && jobs_file_check(s, e);
 }
 
 /* A file of settings, or a program, for which a scenario is made. */

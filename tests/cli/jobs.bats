@@ -206,6 +206,44 @@ refused() {
     refused "combinations: 'each': expected all, alone, pairs or a list of them" "${two[@]}" 'combinations: [each]'
 }
 
+@test "interference: the matrix, its figure, and the error of background traffic in place of neighbours" {
+    scenario 'jobs:' '  - {name: solver, kernel: forward, n: 32, ranks: 8}' '  - {name: swap, kernel: {name: all-to-all, message: 16 KiB}, ranks: 8}' \
+        '  - {name: ring, kernel: {name: random-ring, message: 64 KiB}, ranks: 8}' 'sweep: {machine.placement.kind: [groups, random]}'
+    works mimdsim interference s.yaml -o s.db --json
+    json_is_valid
+    # alone 3, pairs 6, all 3, background 2 jobs five times and one that draws itself: at two places
+    sql_is s.db "SELECT count(*), sum(status = 'ok') FROM run" '46|46'
+    # each cell by its definition
+    json_is '$[#-1].beside' background
+    sql s.db "SELECT round(1.0 * b.makespan_ps / a.makespan_ps, 4) FROM run a JOIN run b ON b.label LIKE 'solver beside ring, %' AND b.placement = 'random'
+              WHERE a.label LIKE 'solver alone, %' AND a.placement = 'random' AND ifnull(a.background_load, 0) = 0" >cell
+    sqlite3 :memory: "SELECT value ->> 'slowdown' FROM json_each('$output') WHERE value ->> 'job' = 'solver' AND value ->> 'beside' = 'ring'
+                      AND value ->> 'placement' = 'random'" >told
+    diff cell told
+    # groups are undisturbed: 1 beside each; the background does not know that
+    sqlite3 :memory: "SELECT count(*), sum(value ->> 'slowdown' = 1) FROM json_each('$output') WHERE value ->> 'placement' = 'groups'
+                      AND value ->> 'beside' <> 'background'" >told
+    [ "$(cat told)" = '9|9' ]
+    sqlite3 :memory: "SELECT count(*) FROM json_each('$output') WHERE value ->> 'beside' = 'background' AND value ->> 'background_percent' > 0
+                      AND value ->> 'error_percent' IS NOT NULL" >told
+    [ "$(cat told)" = 6 ]
+    [ -s figures/interference.png ] && [ -s figures/interference.svg ]
+    [ "$(tail -n +2 figures/interference.csv | wc -l)" -eq 24 ]
+    # nothing is run twice, and other seeds of the same rows agree
+    works mimdsim interference s.yaml -o s.db --quiet
+    sql_is s.db "SELECT count(*) FROM run" 46
+    works mimdsim plot s.db interference
+    works mimdsim check s.db --again 6
+}
+
+@test "interference takes scenarios with jobs" {
+    fails_with 65 mimdsim interference speedup-t3e -o s.db
+    stderr_says "the scenario has no 'jobs' to combine"
+    fails_with 65 mimdsim run speedup-t3e -o s.db --set combinations=pairs
+    stderr_says "the scenario has no 'jobs' to combine"
+    refused "'background' is what takes the place of all other jobs" 'jobs: [{name: background, kernel: barrier, ranks: 4}]'
+}
+
 @test "verbs that look at one program alone say so" {
     scenario "${two[@]}"
     fails_with 78 mimdsim why s.yaml -o s.db

@@ -455,7 +455,9 @@ static void put_tables(struct fixture *f)
 /* Made runs have no loads of links, paths, ranges or measurements (own bats files draw these). */
 static bool is_of_other_rows(const char *figure)
 {
-    return strstr(" linkmap pingpong explain speedup why roofline slack load uncertainty ", figure);
+    return strstr(" interference linkmap pingpong explain speedup why roofline slack load "
+                  "uncertainty ",
+                  figure);
 }
 
 static void every_shipped_figure_can_be_drawn(void **state)
