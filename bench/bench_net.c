@@ -164,6 +164,78 @@ static void bench_loads(const bool *wanted)
         }
 }
 
+/* Series of BookSim at a load of 0.1, packets of 4 flits, on its router of four stages. */
+static const struct {
+    struct topology_spec topology;
+    enum routing_rule rule;
+    const char *what, *pattern;
+    int vcs, buffer;
+    double booksim; /* packets per second of one core */
+} series[] = {
+    {{.family = TOPOLOGY_MESH, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
+     ROUTING_ADAPTIVE_XY_YX,
+     "mesh8x8 adaptive-xy-yx",
+     "transpose",
+     4,
+     16,
+     27000},
+    {{.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
+     ROUTING_BOOKSIM_MIN_ADAPT,
+     "torus8x8 min-adapt",
+     "tornado(8,2)",
+     4,
+     16,
+     27000},
+    {{.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 4},
+     ROUTING_BOOKSIM_UGAL,
+     "flatfly4x4c4 ugal",
+     "tornado(8,2)",
+     4,
+     16,
+     56000},
+    {{.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1},
+     ROUTING_NCA,
+     "fattree_k4_n3 nca",
+     "uniform",
+     4,
+     16,
+     34000},
+    {{.family = TOPOLOGY_DRAGONFLY,
+      .ndim = 4,
+      .dims = {2, 4, 2, 0},
+      .nodes_per_router = 1,
+      .dim_latency = {9e-9, 99e-9}},
+     ROUTING_BOOKSIM_UGAL,
+     "dragonfly72 ugal",
+     "uniform",
+     3,
+     256,
+     41000},
+};
+
+static void bench_routed(const bool *wanted)
+{
+    enum { ROUTED_FLITS = 4, STAGES = 4 };
+    for (size_t i = 0; i < sizeof series / sizeof *series; i++) {
+        struct job j = {.arena = arena_create()};
+        struct topology_spec s = series[i].topology;
+        struct err e;
+        err_clear(&e);
+        s.processors_per_node = 1;
+        s.tie = TIE_RANDOM;
+        j.machine = netcheck_machine(&s, series[i].vcs, series[i].buffer, ROUTED_FLITS, STAGES);
+        j.machine.network.routing = series[i].rule;
+        j.machine.network.vc_allocator = ALLOCATOR_ISLIP;
+        j.topology = topology_create(&j.machine.topology, j.arena, &e);
+        CHECK(j.topology);
+        CHECK(netcheck_load(series[i].pattern, j.topology, ROUTED_FLITS, 0.1, LOAD_CYCLES, 1,
+                            j.arena, &j.q, &e));
+        for (int l = 0; l < LEVELS; l++)
+            if (wanted[l]) measure(&j, series[i].what, (enum network_level)l, series[i].booksim);
+        arena_destroy(j.arena);
+    }
+}
+
 int main(int argc, char **argv)
 {
     bool wanted[LEVELS];
@@ -175,5 +247,6 @@ int main(int argc, char **argv)
            "ns/mess.", "ev./mess.", "B/node", "BookSim");
     bench_doubling(wanted);
     bench_loads(wanted);
+    bench_routed(wanted);
     return 0;
 }

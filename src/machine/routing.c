@@ -40,7 +40,13 @@ struct routing *routing_create(const struct topology *t, enum routing_rule rule,
     struct routing *r = TAKE(a, 1, struct routing);
     *r = (struct routing){
         .topology = t, .type = type, .rule = rule, .channels = channels, .max_hops = t->max_hops};
-    return type->create(r, a, e) ? r : NULL;
+    r->end = TAKE(a, t->nlink + 1, int);
+    for (int i = 0, from, port; i < t->nlink; i++)
+        topology_link_ends(t, i, &from, &r->end[i], &port);
+    if (!type->create(r, a, e)) return NULL;
+    /* Rules by dimensions do not use a hypercube's Xpress links, its own routes do. */
+    if (t->spec->xpress) r->minimal = false;
+    return r;
 }
 
 struct route routing_start(const struct routing *r, int src, int dst, uint64_t choice)
@@ -63,6 +69,12 @@ int routing_inject(const struct routing *r, struct route *p, int *first)
     return r->type->inject ? r->type->inject(r, p, first) : r->channels;
 }
 
+int routing_eject(const struct routing *r, const struct route *p, int *first)
+{
+    *first = 0;
+    return r->type->eject ? r->type->eject(r, p, first) : r->channels;
+}
+
 int routing_next(const struct routing *r, struct route *p, const struct routing_view *view,
                  struct route_option *option)
 {
@@ -72,9 +84,8 @@ int routing_next(const struct routing *r, struct route *p, const struct routing_
 void routing_take(const struct routing *r, struct route *p, const struct route_option *o,
                   int channel)
 {
-    int from, port;
     CHECK(channel >= o->first && channel < o->first + o->count);
-    topology_link_ends(r->topology, o->link, &from, &p->router, &port);
+    p->router = r->end[o->link];
     p->part = o->part;
     p->last = o->last;
     p->channel = channel;

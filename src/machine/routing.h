@@ -50,7 +50,10 @@ struct routing {
     int escape;   /* so many lowest channels are free of deadlock by themselves and open to every
                      packet; 0: all channels are */
     int max_hops; /* longest route in links */
+    int *end;     /* (nlink) the router that a link leads to */
+    bool minimal; /* through an empty network it takes as few links as the topology's own routes */
     bool by_load; /* routes depend on `used` */
+    bool at_source; /* by_load only at the first router */
     bool fits;   /* above the escape a channel may be given only to a packet that it can hold whole:
                     one that stands behind another could not turn to the escape */
     void *state; /* of the rule */
@@ -69,6 +72,10 @@ struct route routing_start(const struct routing *r, int src, int dst, uint64_t c
 /* routing_inject: the channels over which it may enter the network: *first .. *first + result - 1.
  */
 int routing_inject(const struct routing *r, struct route *p, int *first);
+
+/* routing_eject: the channels over which it may leave the network at its target's router, once
+ * routing_next has said 0: *first .. *first + result - 1. */
+int routing_eject(const struct routing *r, const struct route *p, int *first);
 
 /* routing_next: the ways on from p->router into option[ROUTING_MOST_OPTIONS]; returns how many, 0:
  * this is the target's router. To be called once at each router: it may draw random numbers. */

@@ -17,7 +17,7 @@ static bool escape_create(struct routing *r, struct arena *a, struct err *e)
     r->state = g;
     r->max_hops = g->diameter;
     r->escape = g->wraps ? RING_ESCAPE : MESH_ESCAPE;
-    r->by_load = r->fits = true;
+    r->by_load = r->fits = r->minimal = true;
     return routing_needs(r, r->escape + 1, "escape channels and one that adapts", e);
 }
 
@@ -75,6 +75,7 @@ static bool booksim_create(struct routing *r, struct arena *a, struct err *e)
     r->state = g;
     r->max_hops = g->diameter;
     r->escape = g->wraps ? RING_ESCAPE : MESH_ESCAPE;
+    r->minimal = true;
     if (g->wraps) return routing_needs(r, 4, "its channel 3 adapts", e);
     return routing_needs(r, 2, "an escape channel and one that adapts", e);
 }
@@ -233,9 +234,9 @@ static int distance_next(const struct routing *r, struct route *p, const struct 
 enum { MESHES = 1 << TOPOLOGY_MESH | 1 << TOPOLOGY_HYPERCUBE, RINGS = 1 << TOPOLOGY_TORUS };
 
 const struct routing_type routing_adaptive_types[] = {
-    {ROUTING_ADAPTIVE, MESHES | RINGS, escape_create, NULL, escape_next},
-    {ROUTING_BOOKSIM_MIN_ADAPT, MESHES, booksim_create, NULL, booksim_mesh_next},
-    {ROUTING_BOOKSIM_MIN_ADAPT, RINGS, booksim_create, NULL, booksim_torus_next},
-    {ROUTING_ADAPTIVE, 0, distance_create, NULL, distance_next},
-    {0, 0, NULL, NULL, NULL},
+    {ROUTING_ADAPTIVE, MESHES | RINGS, escape_create, NULL, escape_next, NULL},
+    {ROUTING_BOOKSIM_MIN_ADAPT, MESHES, booksim_create, NULL, booksim_mesh_next, NULL},
+    {ROUTING_BOOKSIM_MIN_ADAPT, RINGS, booksim_create, NULL, booksim_torus_next, NULL},
+    {ROUTING_ADAPTIVE, 0, distance_create, NULL, distance_next, NULL},
+    {0, 0, NULL, NULL, NULL, NULL},
 };

@@ -12,7 +12,7 @@ static bool dragonfly_create(struct routing *r, struct arena *a, struct err *e)
 {
     (void)a;
     const bool ugal = r->rule == ROUTING_BOOKSIM_UGAL;
-    r->by_load = ugal;
+    r->by_load = r->at_source = ugal;
     r->max_hops = (ugal ? 2 : 1) * r->topology->max_hops;
     return routing_needs(r, ugal ? UGAL_CHANNELS : MINIMAL_CHANNELS, "a channel for each stage", e);
 }
@@ -73,10 +73,20 @@ static int dragonfly_next(const struct routing *r, struct route *p, const struct
     return 1;
 }
 
+/* Out of the network over the channel of its stage, which is that of the simulator's code. */
+static int dragonfly_eject(const struct routing *r, const struct route *p, int *first)
+{
+    (void)r;
+    *first = p->part;
+    return 1;
+}
+
 enum { DRAGONFLIES = 1 << TOPOLOGY_DRAGONFLY };
 
 const struct routing_type routing_dragonfly_types[] = {
-    {ROUTING_BOOKSIM_MIN, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next},
-    {ROUTING_BOOKSIM_UGAL, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next},
-    {0, 0, NULL, NULL, NULL},
+    {ROUTING_BOOKSIM_MIN, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next,
+     dragonfly_eject},
+    {ROUTING_BOOKSIM_UGAL, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next,
+     dragonfly_eject},
+    {0, 0, NULL, NULL, NULL, NULL},
 };

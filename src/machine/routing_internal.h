@@ -14,6 +14,8 @@ struct routing_type {
     int (*inject)(const struct routing *r, struct route *p, int *first);
     int (*next)(const struct routing *r, struct route *p, const struct routing_view *view,
                 struct route_option *option);
+    /* NULL: any channel */
+    int (*eject)(const struct routing *r, const struct route *p, int *first);
 };
 
 /* The rules by file, each list ended by one without `create`. */

@@ -31,6 +31,10 @@ struct lattice *lattice_create(const struct routing *r, struct arena *a)
     const struct topology *t = r->topology;
     struct lattice *g = TAKE(a, 1, struct lattice);
     lattice_shape(g, t->spec);
+    /* Coordinates by divisions, once: rules ask for them at every router of every packet. */
+    g->at = TAKE(a, size_product((size_t)t->nrouter, (size_t)g->ndim), int);
+    for (int i = 0; i < t->nrouter * g->ndim; i++)
+        g->at[i] = i / g->ndim / g->stride[i % g->ndim] % g->radix[i % g->ndim];
     g->out = TAKE(a, size_product((size_t)t->nrouter, (size_t)g->degree), int);
     for (int i = 0; i < t->nrouter * g->degree; i++) g->out[i] = -1;
     for (int link = 0; link < t->nlink; link++) {
@@ -103,6 +107,7 @@ static bool order_create(struct routing *r, struct arena *a, struct err *e)
     struct lattice *g = lattice_create(r, a);
     r->state = g;
     r->max_hops = g->diameter;
+    r->minimal = true;
     return routing_needs(r, g->wraps ? 2 : 1, "two halves of the ring", e);
 }
 
@@ -126,7 +131,8 @@ static bool either_create(struct routing *r, struct arena *a, struct err *e)
     struct lattice *g = lattice_create(r, a);
     r->state = g;
     r->max_hops = g->diameter;
-    r->by_load = r->rule == ROUTING_ADAPTIVE_XY_YX;
+    r->minimal = true;
+    r->by_load = r->at_source = r->rule == ROUTING_ADAPTIVE_XY_YX;
     return routing_needs(r, 2, "one half for each order of dimensions", e);
 }
 
@@ -157,6 +163,7 @@ static bool through_create(struct routing *r, struct arena *a, struct err *e)
     struct lattice *g = lattice_create(r, a);
     r->state = g;
     r->max_hops = 2 * g->diameter;
+    r->minimal = r->rule == ROUTING_ROMM;
     return routing_needs(r, g->wraps ? 4 : 2, "classes for each leg", e);
 }
 
@@ -211,7 +218,7 @@ static bool butterfly_create(struct routing *r, struct arena *a, struct err *e)
 {
     r->state = lattice_create(r, a);
     r->max_hops = 2 * r->topology->max_hops;
-    r->by_load = true;
+    r->by_load = r->at_source = r->minimal = true;
     return routing_needs(r, 2, "one half for each leg", e);
 }
 
@@ -263,11 +270,11 @@ enum {
 };
 
 const struct routing_type routing_lattice_types[] = {
-    {ROUTING_BOOKSIM_DIM_ORDER, GRIDS | DIRECT, order_create, NULL, order_next},
-    {ROUTING_XY_YX, MESHES | DIRECT, either_create, NULL, either_next},
-    {ROUTING_ADAPTIVE_XY_YX, MESHES | DIRECT, either_create, NULL, either_next},
-    {ROUTING_ROMM, GRIDS, through_create, NULL, through_next},
-    {ROUTING_BOOKSIM_VALIANT, GRIDS | DIRECT, through_create, NULL, through_next},
-    {ROUTING_BOOKSIM_UGAL, DIRECT, butterfly_create, NULL, butterfly_next},
-    {0, 0, NULL, NULL, NULL},
+    {ROUTING_BOOKSIM_DIM_ORDER, GRIDS | DIRECT, order_create, NULL, order_next, NULL},
+    {ROUTING_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL},
+    {ROUTING_ADAPTIVE_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL},
+    {ROUTING_ROMM, GRIDS, through_create, NULL, through_next, NULL},
+    {ROUTING_BOOKSIM_VALIANT, GRIDS | DIRECT, through_create, NULL, through_next, NULL},
+    {ROUTING_BOOKSIM_UGAL, DIRECT, butterfly_create, NULL, butterfly_next, NULL},
+    {0, 0, NULL, NULL, NULL, NULL},
 };

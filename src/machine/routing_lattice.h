@@ -17,6 +17,7 @@ struct lattice {
     int bundle[LATTICE_MOST_DIMS]; /* parallel cables, numbered one after the other */
     /* (nrouter x degree) links that leave: up and down in each dimension, or to each coordinate */
     int *out;
+    int *at; /* (nrouter x ndim) coordinates */
 };
 
 /* lattice_create: of r->topology, memory from a. */
@@ -25,7 +26,7 @@ struct lattice *lattice_create(const struct routing *r, struct arena *a);
 /* lattice_at: coordinate d of a router. */
 static inline int lattice_at(const struct lattice *g, int router, int d)
 {
-    return router / g->stride[d] % g->radix[d];
+    return g->at[router * g->ndim + d];
 }
 
 /* lattice_dimension: the first dimension in which two routers differ, -1: none; from the last one

@@ -10,7 +10,7 @@ static bool legs_create(struct routing *r, struct arena *a, struct err *e)
 {
     (void)a;
     const int legs = r->rule == ROUTING_DETERMINISTIC || r->rule == ROUTING_BOOKSIM_MIN ? 1 : 2;
-    r->by_load = r->rule == ROUTING_UGAL_L || r->rule == ROUTING_UGAL_G;
+    r->by_load = r->at_source = r->minimal = r->rule == ROUTING_UGAL_L || r->rule == ROUTING_UGAL_G;
     r->max_hops = legs * r->topology->max_hops;
     /* The fixed routes of BookSim's arbitrary networks take any channel and may deadlock. */
     if (r->rule == ROUTING_BOOKSIM_MIN) return routing_needs(r, 1, "", e);
@@ -82,10 +82,10 @@ static int legs_next(const struct routing *r, struct route *p, const struct rout
 }
 
 const struct routing_type routing_leg_types[] = {
-    {ROUTING_DETERMINISTIC, 0, legs_create, NULL, legs_next},
-    {ROUTING_BOOKSIM_MIN, 1 << TOPOLOGY_GRAPH, legs_create, NULL, legs_next},
-    {ROUTING_VALIANT, 0, legs_create, NULL, legs_next},
-    {ROUTING_UGAL_L, 0, legs_create, NULL, legs_next},
-    {ROUTING_UGAL_G, 0, legs_create, NULL, legs_next},
-    {0, 0, NULL, NULL, NULL},
+    {ROUTING_DETERMINISTIC, 0, legs_create, NULL, legs_next, NULL},
+    {ROUTING_BOOKSIM_MIN, 1 << TOPOLOGY_GRAPH, legs_create, NULL, legs_next, NULL},
+    {ROUTING_VALIANT, 0, legs_create, NULL, legs_next, NULL},
+    {ROUTING_UGAL_L, 0, legs_create, NULL, legs_next, NULL},
+    {ROUTING_UGAL_G, 0, legs_create, NULL, legs_next, NULL},
+    {0, 0, NULL, NULL, NULL, NULL},
 };

@@ -5,7 +5,7 @@
  * latency after it crossed the last one, the setup of the router is its alone, and a flit needs the
  * credit of the flit a buffer's size earlier. A router is looked at when something can happen in
  * it: then all that asks at this instant is served together (net_router_allocate.c). */
-#include "net/net_router.h"
+#include "net/net_router_lane.h"
 
 /* Second look at a router at the same time. */
 enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
@@ -18,6 +18,13 @@ void router_wake(struct routers *g, int r, sim_ps at)
     const struct net *n = g->fabric.net;
     if (o->wake && o->wake <= at + 1) return;
     o->wake = at + 1;
+    /* An event that an earlier one overtook is still to come. */
+    sim_ps *place = NULL;
+    for (int i = 0; i < ROUTER_POSTED; i++) {
+        if (o->posted[i] == at + 1) return;
+        if (o->posted[i] == 0) place = &o->posted[i];
+    }
+    if (place) *place = at + 1;
     const unsigned lane = at == sim_now(n->sim) ? LANE_AGAIN : NET_LANE_ARBITRATE;
     sim_at(n->sim, at, lane, (uint64_t)n->nresource + (uint64_t)r, g->look, g, (uint64_t)r);
 }
@@ -50,8 +57,25 @@ static void busy_leave(struct lane *v)
     v->busy_link = NULL;
 }
 
+void router_route(struct routers *g, struct lane *v)
+{
+    struct route_option option[ROUTING_MOST_OPTIONS];
+    const struct routing_view view = {router_used, g};
+    const bool looks = router_looks(g, v);
+    const int n = routing_next(g->routing, &v->front->worm->route, &view, option);
+    if (n > v->room) {
+        v->room = n;
+        v->option = TAKE(g->fabric.net->arena, n, struct route_option);
+    }
+    for (int i = 0; i < n; i++) v->option[i] = option[i];
+    v->noption = n;
+    if (n == 0) v->out_count = routing_eject(g->routing, &v->front->worm->route, &v->out_first);
+    v->state = LANE_ASKING;
+    if (looks) v->due += g->fabric.net->setup;
+}
+
 /* A head is routed when it is there and the tail ahead of it has gone; then it asks. Where load
- * does not matter the way is found when it asks, which saves an event. */
+ * does not matter the way is found at once, which saves an event and tells others early. */
 void router_front(struct routers *g, struct lane *v)
 {
     const struct net *n = g->fabric.net;
@@ -64,45 +88,36 @@ void router_front(struct routers *g, struct lane *v)
     const struct port *p = &g->port[v->port];
     v->state = LANE_ROUTING;
     v->due = router_later(l->first + n->tau - n->setup + p->wire, v->left);
-    if (!g->routing->by_load) v->due += n->setup;
+    if (!router_looks(g, v)) {
+        v->due += n->setup;
+        router_route(g, v);
+    }
     busy_enter(g, v);
     router_wake(g, p->to, v->due);
 }
 
 /* ---- credits ---- */
 
-/* Flits follow each other at the rate of the port, so that the first and the last of them decide
- * where those ahead left at one rate; checked one by one, as rates may differ. */
-sim_ps router_room(const struct routers *g, const struct lane *v, int32_t flits, sim_ps now)
-{
-    const struct fabric *f = &g->fabric;
-    const struct port *p = &g->port[v->port];
-    const int64_t free = f->buffer - (v->in - v->out);
-    if (flits > free) return SIM_NEVER;
-    sim_ps at = now;
-    const sim_ps late = f->net->credit + p->wire;
-    for (int32_t j = 0; j < flits; j++) {
-        const int64_t n = v->in + j;
-        if (n < f->buffer) continue;
-        at = router_later(at, v->slot[n % f->buffer] + late - j * p->flit);
-    }
-    return at;
-}
-
-/* Flits in the lanes, and those that left so short a time ago that their credits are not back. */
+/* Flits in the lanes, and those that left so short a time ago that their credits are not back. What
+ * is known already to be sent later does not count. */
 int64_t router_used(const void *of, int link)
 {
     const struct routers *g = of;
     const struct fabric *f = &g->fabric;
     const struct port *p = &g->port[net_resource(f->net, link)];
     const sim_ps late = f->net->credit + p->wire;
+    const sim_ps sent = g->now + f->net->tau - f->net->setup + p->wire;
     int64_t used = 0;
     for (int i = 0; p->lane && i < f->nchannel; i++) {
         const struct lane *v = &p->lane[i];
         used += v->in - v->out;
-        for (int64_t k = v->out - 1; k >= 0 && k >= v->in - f->buffer; k--) {
-            if (v->slot[k % f->buffer] + late <= g->now) break;
+        for (int64_t k = v->out - 1; k >= 0 && k >= v->out - g->ring; k--) {
+            if (v->go[k & g->ring] + late <= g->now) break;
             used++;
+        }
+        for (int64_t k = v->in - 1; k >= 0 && k >= v->in - g->ring; k--) {
+            if (v->come[k & g->ring] < sent) break;
+            used--;
         }
     }
     return used;
@@ -138,17 +153,21 @@ static void tail_sent(struct routers *g, struct lane *v, struct leg *m, sim_ps t
     struct leg *l = v->front;
     struct lane *out = &g->port[m->port].lane[m->channel];
     const bool last = net_is_ejection(f->net, m->port);
+    /* From its tail on the next packet may own the channel, at a time that may lie ahead. */
     out->owner = NULL;
     out->free = ps_later(tail, flit + f->net->allocation);
     net_account(f->net, m->port, s->m, w->index == 0, w->index == 0 ? s->m->bytes : 0,
                 w->flits * flit, m->first - m->ask);
+    /* The packet behind it comes to the front a flit after the tail. */
     v->left = ps_later(tail, flit);
     v->front = l->behind;
     router_leg_return(g, l);
     router_front(g, v);
     /* Others may want the channel. */
-    router_wake(g, g->port[v->port].to, out->free);
+    const int r = g->port[v->port].to;
+    if (g->router[r].busy) router_wake(g, r, out->free);
     if (!last) return;
+    /* The message is there with the last tail of its packets. */
     if (++s->ejected == s->npacket)
         packet_deliver_at(f, s, ps_later(tail, net_end(f->net, s->m->bytes)));
     router_leg_return(g, m);
@@ -164,34 +183,105 @@ static void flits_arrive(struct routers *g, struct leg *m, struct lane *out, int
     /* The setup part of the hop latency is the head's alone; router_front adds it. */
     const sim_ps there = now + n->tau - n->setup + p->wire;
     const bool head = m->sent == flits;
-    for (int32_t j = 0; j < flits; j++)
-        out->slot[out->in++ % g->fabric.buffer] = there + j * p->flit;
+    for (int32_t j = 0; j < flits; j++) out->come[out->in++ & g->ring] = there + j * p->flit;
     if (out->front != m) return;
     if (head) router_front(g, out);
     else if (out->state == LANE_SENDING) router_wake(g, p->to, there);
 }
 
-void router_send(struct routers *g, struct lane *v, sim_ps now)
+/* When lane w may first compete with v, which sends over port out: never before it has a flit, and
+ * where it goes elsewhere, not before its next packet. */
+static sim_ps competes(const struct routers *g, const struct lane *v, const struct lane *w, int out,
+                       sim_ps now)
+{
+    const struct net *n = g->fabric.net;
+    int32_t left = w->front->worm->flits;
+    bool meets = w->port == v->port;
+    if (w->state == LANE_ROUTING) return w->due;
+    if (w->state == LANE_SENDING) {
+        const struct leg *m = w->front->ahead;
+        left -= m->sent;
+        if (meets || m->port == out)
+            return w->out < w->in ? w->come[w->out & g->ring] : now + n->tau - n->setup;
+    } else {
+        for (int i = 0; (i == 0 || i < w->noption) && !meets; i++)
+            meets = router_out(g, w, w->noption > 0 ? &w->option[i] : NULL) == out;
+        if (meets) return w->due;
+    }
+    return router_later(now, w->due) + left * g->fabric.fastest + n->setup;
+}
+
+/* Until when nobody can dispute v's way over port out: a head that is not yet under way to this
+ * router asks no sooner than a hop latency from now. */
+static sim_ps undisputed(const struct routers *g, const struct lane *v, int out, sim_ps now)
+{
+    sim_ps until = now + g->fabric.net->tau;
+    /* A rule that looks at the room in a lane must not see what is yet to come. */
+    if (g->whole || g->routing->fits) return now;
+    for (const struct lane *w = g->router[g->port[v->port].to].busy; w && until > now; w = w->busy)
+        if (w != v) until = router_sooner(until, competes(g, v, w, out, now));
+    return until;
+}
+
+/* What moves at once crosses at `now`. Returns when its tail has. */
+static sim_ps cross(struct routers *g, struct lane *v, struct leg *m, sim_ps now)
 {
     struct fabric *f = &g->fabric;
-    struct leg *l = v->front, *m = l->ahead;
     struct port *in = &g->port[v->port], *p = &g->port[m->port];
-    struct lane *out = &p->lane[m->channel];
     const int32_t flits = router_unit(g, m->worm);
-    const bool full = v->in - v->out + in->loop >= f->buffer || g->whole;
     if (m->sent == 0) m->first = now;
     m->sent += flits;
     /* A fast port cannot outrun a slow one before it. */
     sim_ps tail = now + (flits - 1) * p->flit;
-    if (g->whole) tail = router_later(tail, l->tail + f->net->tau + in->wire);
+    if (g->whole) tail = router_later(tail, v->front->tail + f->net->tau + in->wire);
     m->tail = tail;
     f->resource[m->port].free = in->passed = ps_later(tail, p->flit);
-    for (int32_t j = 0; j < flits; j++) v->slot[v->out++ % f->buffer] = now + j * p->flit;
-    if (full) upstream_wake(g, v->port, now + f->net->credit + in->wire);
-    if (!net_is_ejection(f->net, m->port)) flits_arrive(g, m, out, flits, now);
+    for (int32_t j = 0; j < flits; j++) v->go[v->out++ & g->ring] = now + j * p->flit;
+    if (!net_is_ejection(f->net, m->port)) flits_arrive(g, m, &p->lane[m->channel], flits, now);
+    return tail;
+}
+
+/* After its first flit at `now`, further ones of v's front over m into out, at times that are
+ * known: until when nobody can dispute the way. Alone they win, and turns move on. Returns when the
+ * last one crosses. */
+static sim_ps train(struct routers *g, struct lane *v, struct leg *m, struct lane *out, sim_ps now)
+{
+    const struct net *n = g->fabric.net;
+    struct port *in = &g->port[v->port], *p = &g->port[m->port];
+    const bool sink = net_is_ejection(n, m->port);
+    const sim_ps way = n->tau - n->setup + p->wire, until = undisputed(g, v, m->port, now);
+    sim_ps last = now;
+    for (int i = 1; i < ROUTER_AHEAD && m->sent < m->worm->flits && v->out < v->in; i++) {
+        sim_ps at = router_later(v->come[v->out & g->ring], last + p->flit);
+        if (at < until && !sink) at = router_room(g, out, 1, at);
+        if (at >= until) break;
+        v->go[v->out++ & g->ring] = last = at;
+        if (!sink) out->come[out->in++ & g->ring] = at + way;
+        m->sent++;
+    }
+    if (last == now) return now;
+    /* Alone at both sides of the switch it would have won every round. */
+    p->grant = in->in + 1;
+    in->accept = p->out + 1;
+    m->tail = last;
+    g->fabric.resource[m->port].free = in->passed = ps_later(last, p->flit);
+    return last;
+}
+
+void router_send(struct routers *g, struct lane *v, sim_ps now)
+{
+    struct leg *m = v->front->ahead;
+    struct port *in = &g->port[v->port], *p = &g->port[m->port];
+    struct lane *out = &p->lane[m->channel];
+    /* The head or next flit now, then what can follow without a dispute. */
+    sim_ps tail = cross(g, v, m, now);
+    if (m->sent < m->worm->flits && v->out < v->in) tail = train(g, v, m, out, now);
+    /* A place has become free, and somebody waits for it. */
+    if (v->starved) upstream_wake(g, v->port, now + g->fabric.net->credit + in->wire);
+    v->starved = false;
     if (m->sent == m->worm->flits) {
         tail_sent(g, v, m, tail, p->flit);
     } else if (v->out < v->in) {
-        router_wake(g, in->to, router_later(in->passed, v->slot[v->out % f->buffer]));
+        router_wake(g, in->to, router_later(in->passed, v->come[v->out & g->ring]));
     }
 }

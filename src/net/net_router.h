@@ -11,6 +11,8 @@
 #include "net/net_packet.h"
 #include "net/net_way.h"
 
+enum { ROUTER_AHEAD = 16 }; /* most flits that a router sends ahead of time */
+
 /* A packet in the network. */
 struct worm {
     struct worm *next; /* in the pool */
@@ -44,13 +46,16 @@ struct lane {
     struct leg *front, *back; /* worms in the FIFO */
     sim_ps left;              /* when the tail of the one that left last had left */
     int64_t in, out;          /* flits that ever entered and left */
-    sim_ps *slot; /* (buffer) of flit n: its arrival, later its departure, whose credit flit n +
-                     buffer needs */
+    sim_ps *come, *go; /* (ring) of flit n: its arrival; its departure, whose credit flit n + buffer
+                          needs. Both may lie ahead (router_send) */
     int32_t port, channel;
     enum lane_state state;
     sim_ps due;
     struct route_option *option; /* (noption) of the front, none: to its node */
     int noption, room;
+    int out_first, out_count; /* channels to its node */
+    bool starved;             /* somebody upstream waits for a flit of it to be sent */
+    bool bars; /* one of its options has no channel, which spoils its turn at the switch */
     struct lane *busy, **busy_link; /* the router's lanes that have a front */
     uint32_t accept, grant; /* round robin: as a FIFO that asks, as a channel that is given */
     /* Of one allocation: */
@@ -65,10 +70,10 @@ struct port {
     sim_ps passed;     /* when the FIFOs at its end can pass on the next flit */
     int32_t from, to;  /* routers, -1: a node */
     uint32_t in, out;  /* its number among the inputs of `to`, among the outputs of `from` */
-    int loop;          /* flits whose credits may be on their way */
     /* The switch: round robin as an input and as an output, channel whose turn it is. */
     uint32_t accept, grant;
     int turn;
+    int enter; /* way in: channel whose turn it is to take the next packet */
     struct port *match, *wish, *pick;
 };
 
@@ -83,9 +88,12 @@ struct bid {
     bool spec; /* its channel is still being asked for */
 };
 
+enum { ROUTER_POSTED = 3 };
+
 struct router {
     struct lane *busy;
-    sim_ps wake; /* 1 + time of its next event, 0: none */
+    sim_ps wake;                  /* 1 + time of its next event, 0: none */
+    sim_ps posted[ROUTER_POSTED]; /* 1 + times of events that were posted and are to come, or 0 */
 };
 
 struct routers {
@@ -94,6 +102,10 @@ struct routers {
     sim_action *look;      /* what an event of a router does: router_look */
     bool whole;            /* packets move as one: level packet */
     bool priority;         /* allocation of channels obeys the options' priorities */
+    bool strict;           /* heads bid for all their options, as in BookSim's router */
+    int iterations;        /* of an allocation */
+    bool single;           /* a channel that a lone head is given in the first one stays its own */
+    int64_t ring;          /* places of a lane's arrays - 1: a power of two of at least a buffer */
     struct port *port;     /* (nresource) */
     struct router *router; /* (nrouter) */
     struct leg **sending;  /* (nnode) packets that leave their nodes */
@@ -110,32 +122,17 @@ struct routers {
 static inline sim_ps router_later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 static inline sim_ps router_sooner(sim_ps a, sim_ps b) { return a < b ? a : b; }
 
-/* router_lanes: the lanes behind port p, made at the first use. */
-struct lane *router_lanes(struct routers *g, int p);
+/* router_lanes_make: the lanes behind port p, at their first use (router_lanes). */
+struct lane *router_lanes_make(struct routers *g, int p);
 
 /* router_wake: see that router r is looked at, at time `at` or earlier. */
 void router_wake(struct routers *g, int r, sim_ps at);
 
+/* router_route: the way on of v's front; what it asks for from when on. */
+void router_route(struct routers *g, struct lane *v);
+
 /* router_front: lane v may have a new front: find out when its way on is due. */
 void router_front(struct routers *g, struct lane *v);
-
-/* router_room: from when on (>= now) `flits` flits may enter v, one after the other; SIM_NEVER:
- * when that depends on something yet to come, whose event will wake the router. */
-sim_ps router_room(const struct routers *g, const struct lane *v, int32_t flits, sim_ps now);
-
-/* router_unit: how many flits of w move at once. */
-static inline int32_t router_unit(const struct routers *g, const struct worm *w)
-{
-    return g->whole ? w->flits : 1;
-}
-
-/* router_out: the port that option o of lane v's front leads over; o NULL: out of the network. */
-static inline int router_out(const struct routers *g, const struct lane *v,
-                             const struct route_option *o)
-{
-    const struct net *n = g->fabric.net;
-    return o ? net_resource(n, o->link) : net_ejection(n, v->front->worm->flight->m->dst);
-}
 
 /* router_own: the front of v gets lane `out`, by its option o. */
 void router_own(struct routers *g, struct lane *v, struct lane *out);

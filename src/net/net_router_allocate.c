@@ -1,13 +1,12 @@
 /* net_router_allocate.c - one look at a router: channels to heads that ask, and the switch to
  * flits.
  *
- * Both are iSLIP (McKeown 1999) with three iterations, as in BookSim's input-queued router: every
- * output offers itself to the input whose turn it is, every input accepts the offer whose turn it
- * is, and turns move on only after the first iteration. A head bids for the switch in the same
- * instant in which it asks for a channel, and its turn is wasted if it gets none (speculation). */
-#include "net/net_router.h"
-
-enum { ITERATIONS = 3 };
+ * Both are iSLIP (McKeown 1999), as in BookSim's input-queued router: every output offers itself to
+ * the input whose turn it is, every input accepts the offer whose turn it is, and turns move on
+ * only after the first iteration. BookSim's router makes one iteration, whatever its option
+ * alloc_iters says. A head bids for the switch in the same instant in which it asks for a channel,
+ * and its turn is wasted if it gets none (speculation). */
+#include "net/net_router_lane.h"
 
 /* The place of a number after `turn`, in unsigned arithmetic that wraps. */
 static inline uint32_t after(uint32_t number, uint32_t turn) { return number - turn; }
@@ -53,7 +52,8 @@ static sim_ps ask_option(struct routers *g, struct lane *v, const struct route_o
 {
     const int p = router_out(g, v, o);
     struct lane *lane = router_lanes(g, p);
-    const int first = o ? o->first : 0, count = o ? o->count : g->fabric.nchannel;
+    int first;
+    const int count = router_channels(v, o, &first);
     sim_ps again = SIM_NEVER;
     for (int i = first; i < first + count; i++) {
         if (lane[i].owner) continue;
@@ -117,7 +117,7 @@ static void channels_accept(struct routers *g, bool turns)
 
 static void channels_allocate(struct routers *g)
 {
-    for (int i = 0; i < ITERATIONS && g->nask > 0; i++) {
+    for (int i = 0; i < g->iterations && g->nask > 0; i++) {
         channels_offer(g);
         channels_accept(g, i == 0);
     }
@@ -158,15 +158,22 @@ static sim_ps switch_free(const struct routers *g, const struct lane *v, int out
     return router_later(g->port[v->port].passed, g->fabric.resource[out].free);
 }
 
-/* A FIFO that has its channel bids if it has a flit and a credit. */
-static sim_ps bid_sending(struct routers *g, struct lane *v, sim_ps now)
+/* From when on a FIFO that has its channel has a flit, a credit, and a free way. */
+static sim_ps sends_from(struct routers *g, struct lane *v, sim_ps now)
 {
     const struct leg *to = v->front->ahead;
     if (v->out >= v->in) return SIM_NEVER;
-    sim_ps at = router_later(v->slot[v->out % g->fabric.buffer], switch_free(g, v, to->port));
-    const struct lane *out = &g->port[to->port].lane[to->channel];
-    if (!net_is_ejection(g->fabric.net, to->port))
-        at = router_later(at, router_room(g, out, router_unit(g, to->worm), now));
+    const sim_ps at = router_later(v->come[v->out & g->ring], switch_free(g, v, to->port));
+    struct lane *out = &g->port[to->port].lane[to->channel];
+    if (net_is_ejection(g->fabric.net, to->port)) return at;
+    return router_later(at, router_room(g, out, router_unit(g, to->worm), now));
+}
+
+/* Then it bids. */
+static sim_ps bid_sending(struct routers *g, struct lane *v, sim_ps now)
+{
+    const struct leg *to = v->front->ahead;
+    const sim_ps at = sends_from(g, v, now);
     if (at <= now && !bid_add(g, v, &g->port[to->port], false))
         return ps_later(now, g->port[to->port].flit);
     return at;
@@ -176,8 +183,9 @@ static sim_ps bid_sending(struct routers *g, struct lane *v, sim_ps now)
 static bool eligible(struct routers *g, const struct lane *v, const struct route_option *o,
                      sim_ps now)
 {
-    const struct lane *lane = router_lanes(g, router_out(g, v, o));
-    const int first = o ? o->first : 0, count = o ? o->count : g->fabric.nchannel;
+    struct lane *lane = router_lanes(g, router_out(g, v, o));
+    int first;
+    const int count = router_channels(v, o, &first);
     const int32_t unit = router_unit(g, v->front->worm);
     for (int i = first; i < first + count; i++)
         if (!lane[i].owner && lane[i].free <= now &&
@@ -187,17 +195,22 @@ static bool eligible(struct routers *g, const struct lane *v, const struct route
 }
 
 /* A head that asks bids for the ports on which it may well get a channel: those of the highest
- * priority of its eligible options. Returns when to try again, if the switch is not free. */
+ * priority of its eligible options. BookSim's bids for all that are eligible, but where one is not,
+ * the router throws its turn away, if it gets one. Returns when to try again, if the switch is not
+ * free. */
 static sim_ps bid_asking(struct routers *g, struct lane *v, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
     int best = -1;
-    for (int i = 0; i < v->noption; i++)
-        if (v->option[i].priority > best && eligible(g, v, &v->option[i], now))
-            best = v->option[i].priority;
+    v->bars = false;
+    for (int i = 0; i < v->noption; i++) {
+        const bool may = eligible(g, v, &v->option[i], now);
+        if (may && v->option[i].priority > best) best = v->option[i].priority;
+        if (!may && g->strict) v->bars = true;
+    }
     for (int i = 0; i == 0 || i < v->noption; i++) {
         const struct route_option *o = v->noption > 0 ? &v->option[i] : NULL;
-        if ((o && o->priority != best) || !eligible(g, v, o, now)) continue;
+        if ((o && !g->strict && o->priority != best) || !eligible(g, v, o, now)) continue;
         const int p = router_out(g, v, o);
         sim_ps at = switch_free(g, v, p);
         if (at <= now && !bid_add(g, v, &g->port[p], true)) at = ps_later(now, g->port[p].flit);
@@ -242,7 +255,7 @@ static void switch_accept(struct routers *g, bool turns)
 
 static void switch_allocate(struct routers *g)
 {
-    for (int i = 0; i < ITERATIONS && g->nbid > 0; i++) {
+    for (int i = 0; i < g->iterations && g->nbid > 0; i++) {
         switch_offer(g);
         switch_accept(g, i == 0);
     }
@@ -250,28 +263,12 @@ static void switch_allocate(struct routers *g)
 
 /* ---- a look ---- */
 
-/* The way on of a front whose time has come; what it asks for from when on. */
-static void front_routes(struct routers *g, struct lane *v)
-{
-    struct route_option option[ROUTING_MOST_OPTIONS];
-    const struct routing_view view = {router_used, g};
-    const int n = routing_next(g->routing, &v->front->worm->route, &view, option);
-    if (n > v->room) {
-        v->room = n;
-        v->option = TAKE(g->fabric.net->arena, n, struct route_option);
-    }
-    for (int i = 0; i < n; i++) v->option[i] = option[i];
-    v->noption = n;
-    v->state = LANE_ASKING;
-    if (g->routing->by_load) v->due += g->fabric.net->setup;
-}
-
 /* Requests of all FIFOs that have a front. */
 static sim_ps requests(struct routers *g, int r, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
     for (struct lane *v = g->router[r].busy; v; v = v->busy) {
-        if (v->state == LANE_ROUTING && v->due <= now) front_routes(g, v);
+        if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
         if (v->state == LANE_SENDING) {
             const sim_ps at = bid_sending(g, v, now);
             if (at > now) again = router_sooner(again, at);
@@ -306,11 +303,12 @@ static void channels_take(struct routers *g)
 static bool winner_sends(struct routers *g, const struct bid *b, sim_ps now)
 {
     struct lane *v = b->lane;
+    if (b->spec && v->bars) return false;
     b->in->turn = (v->channel + 1) % g->fabric.nchannel;
     if (v->state != LANE_SENDING) return false;
     const struct leg *to = v->front->ahead;
     if (&g->port[to->port] != b->out) return false;
-    const struct lane *out = &b->out->lane[to->channel];
+    struct lane *out = &b->out->lane[to->channel];
     if (!net_is_ejection(g->fabric.net, to->port) &&
         router_room(g, out, router_unit(g, to->worm), now) > now)
         return false;
@@ -324,9 +322,107 @@ static bool waits(const struct lane *v)
     return v->state == LANE_ASKING || (v->state == LANE_SENDING && v->front->ahead->sent == 0);
 }
 
+/* ---- a lane that is alone ---- */
+
+/* The one that a head without rivals gets of the channels of its only way: the one whose turn it
+ * is. *again: when to ask for others. */
+static struct lane *channel_alone(struct routers *g, struct lane *v, const struct route_option *o,
+                                  sim_ps now, sim_ps *again)
+{
+    struct lane *lane = router_lanes(g, router_out(g, v, o)), *best = NULL;
+    int first;
+    const int count = router_channels(v, o, &first);
+    for (int i = first; i < first + count; i++) {
+        struct lane *out = &lane[i];
+        if (out->owner || (o && !may_hold(g, out, v->front->worm))) continue;
+        sim_ps at = router_later(now, out->free);
+        if (g->whole && o) at = router_later(at, router_room(g, out, v->front->worm->flits, now));
+        if (at > now) *again = router_sooner(*again, at);
+        else if (!best ||
+                 after(output_number(g, out), v->accept) < after(output_number(g, best), v->accept))
+            best = out;
+    }
+    return best;
+}
+
+/* What an allocation comes to when lane v alone asks or sends: it gets what it wants, and turns
+ * move on. The same as router_allocate, without lists. */
+static sim_ps allocate_alone(struct routers *g, struct lane *v, sim_ps now)
+{
+    sim_ps again = SIM_NEVER;
+    struct port *in = &g->port[v->port];
+    bool bids = true;
+    if (v->state == LANE_ASKING) {
+        const struct route_option *o = v->noption > 0 ? v->option : NULL;
+        struct port *p = &g->port[router_out(g, v, o)];
+        struct lane *out = channel_alone(g, v, o, now, &again);
+        const sim_ps flit = ps_later(now, p->flit);
+        /* Its bid at the switch does not wait for the channel. */
+        bids = eligible(g, v, o, now);
+        const sim_ps at = switch_free(g, v, (int)(p - g->port));
+        if (bids && at > now) again = router_sooner(again, at);
+        bids = bids && at <= now;
+        /* The one offer that it accepts moves both turns on, as in a first round. */
+        if (out) {
+            out->grant = input_number(g, v) + 1;
+            v->accept = output_number(g, out) + 1;
+            v->match = out;
+            router_own(g, v, out);
+        }
+        /* So does the switch, even if there is no channel to use it for. */
+        if (bids) {
+            p->grant = in->in + 1;
+            in->accept = p->out + 1;
+            in->turn = (v->channel + 1) % g->fabric.nchannel;
+        }
+        if (!out) return bids ? router_sooner(again, flit) : again;
+        if (!bids) return router_sooner(again, flit);
+    } else {
+        const sim_ps at = sends_from(g, v, now);
+        if (at > now) return at;
+    }
+    /* It has a channel and the switch: a flit goes if its buffer has room. */
+    const struct bid b = {v, in, &g->port[v->front->ahead->port], false};
+    b.out->grant = in->in + 1;
+    in->accept = b.out->out + 1;
+    if (!winner_sends(g, &b, now)) again = router_sooner(again, ps_later(now, b.out->flit));
+    return again;
+}
+
+enum { MOST_APART = 6 };
+
+/* The lanes of router r whose time has come, into lane[MOST_APART], if none of them is in another's
+ * way; else -1. *others: when the time of the others comes. */
+static int lanes_apart(struct routers *g, int r, sim_ps now, struct lane **lane, sim_ps *others)
+{
+    int n = 0, out[MOST_APART];
+    for (struct lane *v = g->router[r].busy; v; v = v->busy) {
+        if (v->due > now) {
+            *others = router_sooner(*others, v->due);
+            continue;
+        }
+        /* Loads must be looked at by all of an instant together, before anything moves. */
+        if (n == MOST_APART || v->state == LANE_ROUTING) return -1;
+        if (v->state == LANE_ASKING && (v->noption > 1 || !g->single)) return -1;
+        out[n] = v->state == LANE_SENDING ? v->front->ahead->port
+                                          : router_out(g, v, v->noption > 0 ? v->option : NULL);
+        /* The same way out, or the same input of the switch: allocation decides. */
+        for (int i = 0; i < n; i++)
+            if (out[i] == out[n] || lane[i]->port == v->port) return -1;
+        lane[n++] = v;
+    }
+    return n;
+}
+
 sim_ps router_allocate(struct routers *g, int r, sim_ps now)
 {
     g->now = now;
+    struct lane *lane[MOST_APART];
+    sim_ps others = SIM_NEVER;
+    const int n = lanes_apart(g, r, now, lane, &others);
+    /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
+    for (int i = 0; i < n; i++) others = router_sooner(others, allocate_alone(g, lane[i], now));
+    if (n >= 0) return others;
     g->nask = g->nbid = 0;
     sim_ps again = requests(g, r, now);
     channels_allocate(g);
@@ -349,6 +445,8 @@ void router_look(void *subject, uint64_t argument, sim_ps now)
 {
     struct routers *g = subject;
     struct router *o = &g->router[argument];
+    for (int i = 0; i < ROUTER_POSTED; i++)
+        if (o->posted[i] == now + 1) o->posted[i] = 0;
     if (o->wake != now + 1) return; /* another event came before and did it */
     o->wake = 0;
     const sim_ps again = router_allocate(g, (int)argument, now);

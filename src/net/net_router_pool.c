@@ -1,21 +1,23 @@
 /* net_router_pool.c - records of net_router.h: lanes where they are first used, legs and worms out
  * of pools, so that a steady load allocates nothing. */
-#include "net/net_router.h"
+#include "net/net_router_lane.h"
 
-struct lane *router_lanes(struct routers *g, int p)
+struct lane *router_lanes_make(struct routers *g, int p)
 {
     struct port *o = &g->port[p];
-    if (o->lane) return o->lane;
     const struct net *n = g->fabric.net;
     const int count = g->fabric.nchannel;
-    const int64_t buffer = net_is_ejection(n, p) ? 0 : g->fabric.buffer;
+    /* The sink keeps nothing. */
+    const int64_t places = net_is_ejection(n, p) ? 0 : 2 * (g->ring + 1);
     o->lane = TAKE(n->arena, count, struct lane);
-    sim_ps *slot =
-        buffer ? TAKE(n->arena, size_product((size_t)count, (size_t)buffer), sim_ps) : NULL;
+    sim_ps *ring =
+        places ? TAKE(n->arena, size_product((size_t)count, (size_t)places), sim_ps) : NULL;
     for (int i = 0; i < count; i++) {
         o->lane[i].port = p;
         o->lane[i].channel = i;
-        if (slot) o->lane[i].slot = slot + i * buffer;
+        if (!ring) continue;
+        o->lane[i].come = ring + i * places;
+        o->lane[i].go = o->lane[i].come + places / 2;
     }
     return o->lane;
 }
@@ -29,6 +31,7 @@ struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v)
     }
     struct leg *l = g->free_leg;
     g->free_leg = l->behind;
+    /* It owns the channel from now on, so that no other worm comes between its flits. */
     *l = (struct leg){.worm = w, .port = v->port, .channel = v->channel};
     v->owner = l;
     /* The sink has no FIFO: it takes what comes. */

@@ -1,7 +1,7 @@
 /* net_router_source.c - packets from their nodes into the first lane, and the levels themselves. */
 #include <string.h>
 
-#include "net/net_router.h"
+#include "net/net_router_lane.h"
 
 /* ---- sources ---- */
 
@@ -13,12 +13,12 @@ static int source_channel(struct routers *g, int node, const struct worm *w, sim
     struct port *p = &g->port[node];
     struct lane *v = router_lanes(g, node);
     for (int k = 0; k < w->count; k++) {
-        const int i = w->first + (p->turn + k) % w->count;
+        const int i = w->first + (p->enter + k) % w->count;
         if (v[i].owner) continue;
         const sim_ps at = router_room(g, &v[i], router_unit(g, w), now);
         *again = router_sooner(*again, at);
         if (at > now) continue;
-        p->turn = (i + 1 - w->first) % w->count;
+        p->enter = (i + 1 - w->first) % w->count;
         return i;
     }
     return -1;
@@ -42,7 +42,7 @@ static void source_flits(struct routers *g, int node, sim_ps now)
         const sim_ps there = at + f->net->tau - f->net->setup;
         if (head) l->first = at;
         if (head && l->worm->index == 0) m->m->injected = at;
-        for (int32_t j = 0; j < unit; j++) v->slot[v->in++ % f->buffer] = there + j * flit;
+        for (int32_t j = 0; j < unit; j++) v->come[v->in++ & g->ring] = there + j * flit;
         l->sent += unit;
         l->tail = at + (unit - 1) * flit;
         o->free = ps_later(l->tail, flit);
@@ -60,7 +60,7 @@ static void source_flits(struct routers *g, int node, sim_ps now)
 }
 
 /* The next packet of a node begins when the one before has gone. It waits at its node until one of
- * the channels that it may enter over is free; which ones is drawn once. */
+ * the channels that it may enter over has room. */
 static sim_ps source_begin(struct routers *g, int node, sim_ps now)
 {
     struct fabric *f = &g->fabric;
@@ -74,8 +74,14 @@ static sim_ps source_begin(struct routers *g, int node, sim_ps now)
         w = g->waiting[node] = router_worm(g, m);
         w->count = routing_inject(g->routing, &w->route, &w->first);
     }
+    /* The channel is chosen when one has room, not before: each packet takes the next in turn. */
     const int channel = source_channel(g, node, w, now, &again);
-    if (channel < 0) return again;
+    if (channel < 0) {
+        /* Where chance names the channel, it names one anew a flit later, as in BookSim. */
+        if (w->count == g->routing->channels) return again;
+        w->count = routing_inject(g->routing, &w->route, &w->first);
+        return ps_later(now, g->port[node].flit);
+    }
     struct leg *l = router_leg(g, w, &g->port[node].lane[channel]);
     l->ask = m->injected == 0 ? m->m->ready : f->resource[node].free;
     if (++m->injected == m->npacket && !(z->front = m->next)) z->back = NULL;
@@ -132,7 +138,6 @@ static void ports_make(struct routers *g)
             if (n->wire) p->wire = n->wire[i - n->nnode];
         }
         if (p->from >= 0) p->out = leaving[p->from]++;
-        p->loop = (int)((n->credit + p->wire) / (p->flit > 0 ? p->flit : 1)) + 2;
     }
 }
 
@@ -142,12 +147,18 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
         (struct routers *)(void *)(whole ? packet_fabric(n, sizeof *g, source_look, e)
                                          : fabric_create(n, sizeof *g, source_look, e));
     if (!g) return NULL;
+    /* What differs between the levels, and between this program's rules and BookSim's. */
     g->routing = n->routing;
     g->look = router_look;
     g->whole = whole;
     /* This program's own adaptive rule says which way is best by priorities alone. */
     g->priority = n->machine->network.vc_allocator == ALLOCATOR_SELECT ||
                   n->routing->rule == ROUTING_ADAPTIVE;
+    g->strict = n->routing->rule == ROUTING_BOOKSIM_MIN_ADAPT;
+    g->iterations = n->machine->network.allocator_iterations;
+    g->single = g->iterations == 1 || !g->priority;
+    /* A buffer, and what may be known to come. */
+    while (g->ring < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
     g->fabric.occupied = packet_occupied;
     g->port = TAKE(n->arena, n->nresource, struct port);
     g->router = TAKE(n->arena, n->topology->nrouter, struct router);

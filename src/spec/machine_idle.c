@@ -105,6 +105,15 @@ const char *machine_idle_above_packets(const struct run_spec *r)
     return level == LEVEL_LINK ? "level 'link' moves whole messages" : NULL;
 }
 
+/* Long cables need the same routers as a rule does. */
+const char *machine_idle_without_allocators(const struct run_spec *r)
+{
+    const char *why = machine_idle_above_packets(r);
+    for (int d = 0; d < MACHINE_MAX_DIMS; d++)
+        if (r->machine.topology.dim_latency[d] > 0) return why;
+    return machine_idle_unless_routed(r);
+}
+
 /* Without a rule there is one way on, and every channel of a class is as good. */
 const char *machine_idle_unless_routed(const struct run_spec *r)
 {

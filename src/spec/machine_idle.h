@@ -24,6 +24,7 @@ const char *machine_idle_unless_graph(const struct run_spec *r);
 const char *machine_idle_unless_tolerance(const struct run_spec *r);
 const char *machine_idle_above_packets(const struct run_spec *r);
 const char *machine_idle_unless_routed(const struct run_spec *r);
+const char *machine_idle_without_allocators(const struct run_spec *r);
 const char *machine_idle_unless_server(const struct run_spec *r);
 const char *machine_idle_with_segments(const struct run_spec *r);
 const char *machine_idle_send_overhead(const struct run_spec *r);

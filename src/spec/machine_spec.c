@@ -299,6 +299,9 @@ static const struct field fields[] = {
     {.key = "network.vc_allocator", .kind = FIELD_CHOICE, AT(network.vc_allocator),
      .choice = allocators, .fallback = "select", .idle = machine_idle_unless_routed,
      .doc = "how heads get virtual channels: by a routing rule's priorities, or without them"},
+    {.key = "network.allocator_iterations", .kind = FIELD_INT, AT(network.allocator_iterations),
+     .min = 1, .max = 16, .fallback = "3", .idle = machine_idle_without_allocators,
+     .doc = "rounds of offers in which channels and the switch of a router are given"},
 
     /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
      * with sizes that change the protocol. */

@@ -89,8 +89,7 @@ struct network_spec {
     double hop_latency;         /* router and wire, head of a message, per resource [s] (tau) */
     double end_latency;         /* network interface, entry and exit together [s] */
     double credit_latency;      /* a freed buffer to the sender upstream [s] (c) */
-    double routing_latency; /* part of hop_latency: the route of a head at the front of its buffer
-                               [s] */
+    double routing_latency; /* part of hop_latency: a head's route at the front of a buffer [s] */
     double vc_allocation_latency; /* part of hop_latency: a virtual channel for it, once one is free
                                      [s] */
     int64_t flit_bytes;         /* [B] */
@@ -101,6 +100,7 @@ struct network_spec {
     enum arbitration arbitration;
     enum routing_rule routing;      /* which of several routes a packet takes */
     enum vc_allocator vc_allocator; /* with routing: how heads that ask get channels */
+    int allocator_iterations;       /* with routing: rounds in which a router gives them */
 };
 
 enum placement_kind { PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM,

@@ -197,6 +197,7 @@ struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int
         .vc_allocation_latency = head_cycles > 4 ? cycle : 0,
         .flit_bytes = NETCHECK_FLIT_BYTES,
         .packet_bytes = (int64_t)packet_flits * NETCHECK_FLIT_BYTES,
+        .allocator_iterations = 1,
         .virtual_channels = vcs,
         .buffer_flits = buffer,
         .arbitration = ARBITRATION_ROUND_ROBIN,

@@ -236,6 +236,7 @@ static void check_lengths(const struct routing *r, struct arena *a)
                 const bool shorter = t->spec->family == TOPOLOGY_DRAGONFLY || t->spec->xpress;
                 if (is_minimal(r->rule) && !shorter) assert_int_equal(hops, least);
                 if (!shorter) assert_true(hops >= least && empty >= least);
+                if (r->minimal) assert_int_equal(empty, least);
                 /* Nothing is in the way: by load nobody leaves the shortest way. */
                 if (r->rule == ROUTING_UGAL_L || r->rule == ROUTING_UGAL_G)
                     assert_int_equal(empty, least);
@@ -302,6 +303,38 @@ static void ugal_leaves_a_link_that_is_full(void **state)
     arena_destroy(a);
 }
 
+/* BookSim's dragonflies leave the network over the channel of the packet's stage: the last one that
+ * it took, or where it took none, the first of the rule. All others over any channel. */
+static void packets_leave_over_the_channels_of_their_rule(void **state)
+{
+    (void)state;
+    static const enum routing_rule rule[] = {ROUTING_BOOKSIM_MIN, ROUTING_BOOKSIM_UGAL,
+                                             ROUTING_VALIANT};
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    const struct topology *t = make(&small[11], a);
+    int stage[3][CHANNELS] = {{0}};
+    for (size_t i = 0; i < sizeof rule / sizeof *rule; i++) {
+        const struct routing *r = routing_create(t, rule[i], CHANNELS, a, &e);
+        for (int dst = 0; dst < t->nnode; dst++) {
+            struct route p = routing_start(r, 0, dst, 7);
+            int link, first;
+            while (routing_empty(r, &p, &link)) continue;
+            const int count = routing_eject(r, &p, &first);
+            assert_int_equal(count, rule[i] == ROUTING_VALIANT ? CHANNELS : 1);
+            if (count == 1 && p.hops > 0) assert_int_equal(first, p.channel);
+            stage[i][first]++;
+        }
+    }
+    /* Inside the group over 0, from others over 1; UGAL: all over 2. */
+    assert_int_equal(stage[0][0], 2);
+    assert_int_equal(stage[0][1], t->nnode - 2);
+    assert_int_equal(stage[1][2], t->nnode);
+    assert_int_equal(stage[2][0], t->nnode);
+    arena_destroy(a);
+}
+
 static void numbers_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
@@ -357,6 +390,7 @@ int main(void)
         cmocka_unit_test(routes_have_the_length_of_their_rule),
         cmocka_unit_test(valiant_is_longer_and_ugal_avoids_a_queue),
         cmocka_unit_test(ugal_leaves_a_link_that_is_full),
+        cmocka_unit_test(packets_leave_over_the_channels_of_their_rule),
         cmocka_unit_test(numbers_that_do_not_fit_are_refused),
         cmocka_unit_test(only_deterministic_routes_go_around_failures),
     };
