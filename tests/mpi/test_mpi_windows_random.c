@@ -201,6 +201,77 @@ static void types(void *context)
     MPI_Type_free(&none), MPI_Type_free(&gaps), MPI_Type_free(&down);
 }
 
+/* Accumulates on elements with gaps: of a type, and of pairs as C lays them out. */
+static void gaps(void *context)
+{
+    struct pair {
+        double v;
+        int i;
+    } * cell, x[2] = {{2, 9}, {5, 1}}, got[2];
+    int *integer, ones[2] = {10, 20};
+    MPI_Datatype apart;
+    MPI_Win w;
+    (void)context;
+    MPI_Win_allocate(2 * sizeof *cell, sizeof *cell, MPI_INFO_NULL, MPI_COMM_WORLD, &cell, &w);
+    cell[0] = (struct pair){2, 4 + own_rank()}, cell[1] = (struct pair){7, 7};
+    MPI_Win_fence(0, w);
+    if (own_rank() == 1)
+        MPI_Get_accumulate(x, 2, MPI_DOUBLE_INT, got, 2, MPI_DOUBLE_INT, 0, 0, 2, MPI_DOUBLE_INT,
+                           MPI_MINLOC, w);
+    MPI_Win_fence(0, w);
+    if (own_rank() == 1) assert_true(got[0].v == 2 && got[0].i == 4 && got[1].v == 7);
+    if (own_rank() == 0) assert_true(cell[0].i == 4 && cell[1].v == 5 && cell[1].i == 1);
+    if (own_rank() == 1) assert_true(cell[0].i == 5 && cell[1].v == 7);
+    MPI_Win_free(&w);
+    /* the integers 1 and 3 of the window */
+    MPI_Type_create_indexed_block(2, 1, (int[]){1, 3}, MPI_INT, &apart);
+    MPI_Type_commit(&apart);
+    MPI_Win_allocate(16, 4, MPI_INFO_NULL, MPI_COMM_WORLD, &integer, &w);
+    for (int k = 0; k < 4; k++) integer[k] = k;
+    MPI_Win_fence(0, w);
+    MPI_Accumulate(ones, 2, MPI_INT, 0, 0, 1, apart, MPI_SUM, w);
+    MPI_Win_fence(0, w);
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(integer[k], k + (own_rank() == 0 ? 2 * (k == 1   ? 10
+                                                                 : k == 3 ? 20
+                                                                          : 0)
+                                                          : 0));
+    /* its first byte lies behind where it begins: from -1 on these are the integers 0 and 2 */
+    MPI_Win_fence(0, w);
+    MPI_Put(ones, 2, MPI_INT, own_rank(), -1, 1, apart, w);
+    MPI_Win_fence(0, w);
+    assert_true(integer[0] == 10 && integer[2] == 20);
+    MPI_Win_free(&w);
+    MPI_Type_free(&apart);
+}
+
+/* Whoever wants a window alone is not passed by those who could share it. */
+static int order[8], norder;
+static void queue(void *context)
+{
+    int *cell;
+    MPI_Win w;
+    (void)context;
+    MPI_Win_allocate(4, 4, MPI_INFO_NULL, MPI_COMM_WORLD, &cell, &w);
+    if (own_rank() == 0) norder = 0;
+    MPI_Barrier(MPI_COMM_WORLD);
+    /* rank 1 shares it for a while; rank 2 asks for it alone, then rank 3 to share it */
+    for (int k = 1; k < own_rank(); k++) {
+        const double begin = MPI_Wtime();
+        while (MPI_Wtime() < begin + 100e-6) {
+        }
+    }
+    if (own_rank() > 0) {
+        MPI_Win_lock(own_rank() == 2 ? MPI_LOCK_EXCLUSIVE : MPI_LOCK_SHARED, 0, 0, w);
+        order[norder++] = own_rank();
+        const double begin = MPI_Wtime();
+        while (own_rank() == 1 && MPI_Wtime() < begin + 1e-3) {
+        }
+        MPI_Win_unlock(0, w);
+    }
+    MPI_Win_free(&w);
+}
+
 struct outside {
     MPI_Aint at;
     int n;
@@ -230,9 +301,18 @@ static void what_lies_outside_of_a_window_is_refused(void **state)
                                    {0, 2, true},  {4, 1, true},  {(MPI_Aint)1 << 62, 1, false}};
     (void)state;
     mpi_ok(2, types, NULL);
+    mpi_ok(2, gaps, NULL);
     for (size_t k = 0; k < sizeof good / sizeof *good; k++) mpi_ok(1, reaches, &good[k]);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         mpi_fails(1, reaches, &bad[k], "of a window of 16 bytes");
+}
+
+static void locks_are_granted_in_the_order_of_asking(void **state)
+{
+    (void)state;
+    mpi_ok(4, queue, NULL);
+    assert_int_equal(norder, 3);
+    for (int k = 0; k < 3; k++) assert_int_equal(order[k], k + 1);
 }
 
 static void refusals(void *context)
@@ -290,6 +370,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(windows_are_what_was_done_to_them),
         cmocka_unit_test(counters_give_each_number_once),
+        cmocka_unit_test(locks_are_granted_in_the_order_of_asking),
         cmocka_unit_test(what_lies_outside_of_a_window_is_refused),
         cmocka_unit_test(wrong_epochs_and_arguments_are_refused),
     };
