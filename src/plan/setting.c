@@ -219,25 +219,30 @@ static int candidates(const char *group, char name[][KEY_LENGTH], const char **l
     return n;
 }
 
+/* Whether `key` is the last words of `f`'s own key, and something stands before them. */
+static bool ends_in(const struct field_table *t, const struct field *f, const char *key)
+{
+    const size_t m = strlen(key), length = strlen(f->key);
+    return t->prefix[0] != '\0' && m <= length && strcmp(f->key + length - m, key) == 0 &&
+           (m == length || f->key[length - m - 1] == '.') && !f->label;
+}
+
 /* Whole keys that end in the words of `key`: "bandwidth" and "link.bandwidth" are ends of some. As
- * many as a message has room for; how many there are. */
+ * many as a message has room for; those that do nothing until another setting wakes them come last.
+ * How many there are. */
 static int ends_of_keys(const char *key, struct text *out)
 {
     enum { MOST_TOLD = 4 };
     int ntable, n = 0;
-    const size_t m = strlen(key);
     const struct field_table *const *tables = field_tables(&ntable);
-    for (int i = 0; i < ntable; i++)
-        for (int j = 0; j < tables[i]->nfield; j++) {
-            const char *own = tables[i]->field[j].key;
-            const size_t length = strlen(own);
-            /* Only whole words, and only where something stands before them. */
-            if (tables[i]->prefix[0] == '\0' || m > length || strcmp(own + length - m, key) != 0 ||
-                (m < length && own[length - m - 1] != '.') || tables[i]->field[j].label)
-                continue;
-            if (n++ < MOST_TOLD)
-                text_add(out, "%s'%s.%s'", n > 1 ? " or " : "", tables[i]->prefix, own);
-        }
+    for (int dormant = 0; dormant < 2; dormant++)
+        for (int i = 0; i < ntable; i++)
+            for (int j = 0; j < tables[i]->nfield; j++) {
+                const struct field *f = &tables[i]->field[j];
+                if ((f->dormant != NULL) != dormant || !ends_in(tables[i], f, key)) continue;
+                if (n++ < MOST_TOLD)
+                    text_add(out, "%s'%s.%s'", n > 1 ? " or " : "", tables[i]->prefix, f->key);
+            }
     if (n > MOST_TOLD) text_add(out, " or %d others (`mimdsim keys %s`)", n - MOST_TOLD, key);
     return n;
 }

@@ -26,7 +26,7 @@ load helper
 
 @test "the end of a key is answered with the whole keys" {
     fails_with 65 mimdsim run fig6 --set bandwidth='1 GB/s' -o a.db
-    stderr_says "unknown key 'bandwidth'; did you mean 'machine.node.copy.bandwidth' or 'machine.node.l1.bandwidth'"
+    stderr_says "unknown key 'bandwidth'; did you mean 'machine.node.copy.bandwidth' or 'machine.network.link.bandwidth'"
     stderr_says '(`mimdsim keys bandwidth`'
 
     fails_with 65 mimdsim run fig6 --set link.bandwidth='1 GB/s' -o a.db
