@@ -7,6 +7,7 @@
  * The exit status of a computer that is too busy is that of a locked database: try again. */
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/campaign_mpi.h"
 #include "app/flag.h"
@@ -21,13 +22,12 @@ static const char doc[] =
     "Measure this computer and write a machine file of it.\n\n"
     "Example: mimdsim calibrate -o my-host.yaml\n"
     "\vRates of one processor are fitted to measured times of our own kernels, whose operations "
-    "are "
-    "counted; messages between two processes are measured by size: overheads, latency, gap, rate "
-    "and the switch from eager to rendezvous. Every number has its residual, date and host. "
-    "Samples "
-    "in which the system took a processor away are not counted; when too few are left, nothing is "
-    "written and the exit status is 75. "
-    "Messages need two processes: mpirun -n 2 mimdsim calibrate. With one there are rates alone "
+    "are counted; prices of the code of programs in one file to loops of several kinds. Messages "
+    "between two processes are measured by size: overheads, latency, gap, rate, the switch from "
+    "eager to rendezvous and other jumps; then the barrier and the collectives. Every number has "
+    "its residual, date and host. Samples in which the system took a processor away are not "
+    "counted; when too few are left, nothing is written and the exit status is 75. Messages need "
+    "two processes: mpirun -n 2 mimdsim calibrate. With one there are rates alone "
     "(docs/reality.md).\n\n"
     "--quick: fewer samples and sizes of kernels, under 30 s; else under 5 minutes.";
 
@@ -38,12 +38,44 @@ enum { TAG_DONE = 600, QUICK_SAMPLES = 60, FULL_SAMPLES = 400 };
 struct effort {
     int messages, kernels; /* samples */
     double seconds;        /* of one kernel at one size at most */
+    bool large;            /* collectives of 1 MiB, too */
 };
 
 /* Quick: what fits into half a minute when nothing else runs, and into a minute when much does. */
 static struct effort effort_of(bool quick)
 {
-    return quick ? (struct effort){QUICK_SAMPLES, 10, 1} : (struct effort){FULL_SAMPLES, 40, 4};
+    return quick ? (struct effort){QUICK_SAMPLES, 10, 1, false}
+                 : (struct effort){FULL_SAMPLES, 40, 4, true};
+}
+
+/* Loops of a program in one file, which `mimdsim cc` compiles first: without gcc the machine file
+ * has one price for all instructions, and says so. */
+static bool measure_code(const struct common *c, const struct effort *effort,
+                         struct calibration *out, struct err *e)
+{
+    struct plan p = {0};
+    struct plan_options o = common_plan(c);
+    struct err without;
+    err_clear(&without);
+    out->code.clock = calibration_clock();
+    /* A scenario with a program: reading it compiles, once for this computer. */
+    out->has_code = plan_read(&p, "calibrate-code", &o, &without);
+    if (!out->has_code && !c->quiet)
+        fprintf(stderr, "mimdsim: the code of programs in one file is not measured: %s\n",
+                without.text);
+    /* What no loop tells is priced as measured before. */
+    const struct rates *r = &out->rates;
+    const double hz = out->code.clock;
+    const struct node_spec node = {.flop_rate = r->flop > 0 ? 1 / r->flop : 1e15,
+                                   .div_cycles = r->div * hz,
+                                   .sqrt_cycles = r->sqrt * hz,
+                                   .trig_cycles = r->trig * hz,
+                                   .copy_bandwidth = 1 / r->copy};
+    const bool ok = !out->has_code ||
+                    code_rates_measure(&p, &node, effort->kernels, effort->seconds, c->quiet,
+                                       &out->code, e);
+    plan_free(&p);
+    return ok;
 }
 
 /* The kernels on the first process alone; the others sleep until it is done: spinning, they would
@@ -58,6 +90,7 @@ static bool measure_rates(struct job *job, const struct common *c, const struct 
         ok = plan_read(&p, "calibrate", &o, e) &&
              rates_measure(&p, effort->kernels, effort->seconds, c->quiet, &out->rates, e);
         plan_free(&p);
+        ok = ok && measure_code(c, effort, out, e);
     }
     if (!hosts_tell(&job->h, TAG_DONE, &ok, sizeof ok))
         return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
@@ -78,6 +111,41 @@ static bool measure_messages(struct job *job, const struct effort *effort, struc
     return ok;
 }
 
+/* Collectives by all processes of the job, where each has a processor: in turns their times would
+ * be those of the system's. */
+static bool measure_collectives(struct job *job, const struct common *c,
+                                const struct effort *effort, struct calibration *out,
+                                struct err *e)
+{
+    struct plan p = {0};
+    struct plan_options o = common_plan(c);
+    char ranks[32];
+    const char *const set[] = {ranks};
+    struct machine_spec machine;
+    if (job->h.size < 2 || job->h.size > sysconf(_SC_NPROCESSORS_ONLN)) return true;
+    /* The scenario has two ranks; the job may have more. */
+    snprintf(ranks, sizeof ranks, "ranks=%d", job->h.size);
+    o.nset = 1;
+    o.set = set;
+    /* Every process reads the plan by itself, as for real runs (backend.c). */
+    struct host_comm *comm = host_comm_create(&job->h, e);
+    bool ok = comm != NULL && plan_read(&p, "calibrate-collectives", &o, e);
+    /* The first process predicts with what has been measured so far; the others only take part. */
+    if (ok) {
+        out->clock = calibration_clock();
+        machine = calibration_machine(out, &p.run[0].machine);
+        ok = collective_times_measure(&p, &job->h, comm, job->h.rank == 0 ? &machine : NULL,
+                                      effort->kernels, effort->seconds / 4, effort->large,
+                                      &out->collectives, e);
+        out->has_collectives = ok && out->collectives.n > 0;
+    }
+    plan_free(&p);
+    host_comm_destroy(comm);
+    if (!hosts_tell(&job->h, TAG_DONE, &ok, sizeof ok))
+        return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
+    return ok;
+}
+
 /* Around everything that is measured: the load of others is what the system was busy with, less the
  * processor time of this job, whose processes wait by spinning. */
 static bool measure(struct job *job, const struct common *c, bool quick, struct calibration *out,
@@ -86,7 +154,8 @@ static bool measure(struct job *job, const struct common *c, bool quick, struct 
     const struct effort effort = effort_of(quick);
     const struct host_load_begin load = host_load_start();
     const double own = host_processor_seconds();
-    if (!measure_rates(job, c, &effort, out, e) || !measure_messages(job, &effort, out, e))
+    if (!measure_rates(job, c, &effort, out, e) || !measure_messages(job, &effort, out, e) ||
+        !measure_collectives(job, c, &effort, out, e))
         return false;
     int64_t used = (int64_t)((host_processor_seconds() - own) * 1e9);
     int64_t set = (int64_t)host_processor_set(), *all = NULL;
@@ -112,11 +181,22 @@ static void say(const struct calibration *c, const char *path)
     const struct rates *r = &c->rates;
     printf("%s: %.4g Mflop/s, kernels within %.1f %% (median), %.1f %% (largest)\n", path,
            r->flop > 0 ? 1e-6 / r->flop : 0, 100 * r->median_residual, 100 * r->residual);
+    /* Rates of code by what a person knows of processors: how many instructions a cycle. */
+    if (c->has_code)
+        printf("code: %.2f instructions a cycle, loops within %.1f %% (median), %.1f %% "
+               "(largest)\n",
+               1 / fmax(c->code.price[0], 1e-6), 100 * c->code.median_residual,
+               100 * c->code.residual);
     if (c->has_messages)
         printf("messages: %.3f us for 0 B, %.3f us for 8 KiB; barrier of MPI %.3f us\n",
                c->messages.point[0].one_way * 1e6, c->messages.point[8].one_way * 1e6,
                c->messages.barrier * 1e6);
     else printf("messages: not measured; start two processes: mpirun -n 2 mimdsim calibrate\n");
+    if (c->has_collectives)
+        printf("collectives: %d within %.1f %% (median), %.1f %% (largest) of what messages "
+               "predict\n",
+               c->collectives.n, 100 * c->collectives.median_residual,
+               100 * c->collectives.residual);
     printf("load: other programs kept %.2f processors busy\n", c->load.others);
 }
 

@@ -54,6 +54,8 @@ struct comm_type {
     /* Where time is this computer's: the program's own time begins here (1), or ends (0). NULL:
      * time is simulated. */
     void (*mark)(struct comm *c, int begin);
+    /* The same for what takes no simulated time: the clock stands from 1 to 0. NULL as above. */
+    void (*pause)(struct comm *c, int begin);
 
     /* comm_match.h */
     void (*isend_synchronous)(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,

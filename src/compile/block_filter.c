@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "compile/chain.h"
 #include "compile/entries.h"
 #include "compile/instruction.h"
 #include "compile/label_set.h"
 
-enum { MOST_NESTED = 64 };
+enum { MOST_NESTED = 64, MOST_LABELS = 4 };
 
 /* A section as the text names it. */
 struct section {
@@ -24,6 +25,9 @@ struct block {
     int number; /* 0: none is open */
     struct section *section;
     struct block_counts counts;
+    struct chain chain;             /* its instructions, should it be a loop */
+    struct span label[MOST_LABELS]; /* (nlabel) where it begins */
+    int nlabel;
 };
 
 struct filter {
@@ -96,10 +100,14 @@ static void close_block(struct filter *f)
 {
     const struct block_counts *c = &f->block.counts;
     if (f->block.number != 0)
-        text_add(&f->table, "\t.long .Lmimdsim%d-4-.\n\t.value %u,%u,%u,%u,%u,%u,%u,%u\n",
+        text_add(&f->table,
+                 "\t.long .Lmimdsim%d-4-.\n\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n",
                  f->block.number, c->instruction, c->flop, c->div, c->sqrt, c->trig, c->call,
-                 c->bytes, BLOCK_ADD);
-    f->block = (struct block){0};
+                 c->bytes, c->issue, c->spare, c->chain_flop, c->chain_cycle, BLOCK_ADD);
+    /* Labels that follow each other begin one block. */
+    if (f->block.number != 0) f->block.nlabel = 0;
+    f->block.number = f->block.chain.n = 0;
+    f->block.counts = (struct block_counts){0};
 }
 
 /* The next instruction begins another block; reached tells whether control may come there from
@@ -163,6 +171,21 @@ static void add_counts(struct block_counts *sum, const struct block_counts *c)
     sum->trig += c->trig;
     sum->call += c->call;
     sum->bytes += c->bytes;
+    sum->issue += c->issue;
+}
+
+/* A block that ends with a branch to its own beginning is a loop, and may have to wait for what it
+ * computed the round before. */
+static void close_loop(struct filter *f, struct span target)
+{
+    struct block *b = &f->block;
+    for (int i = 0; i < b->nlabel; i++) {
+        if (target.n != b->label[i].n || memcmp(target.s, b->label[i].s, (size_t)target.n) != 0)
+            continue;
+        const struct chain_length round = chain_round(&b->chain);
+        b->counts.chain_flop = (uint16_t)round.flop;
+        b->counts.chain_cycle = (uint16_t)round.cycles;
+    }
 }
 
 /* Thread-local addresses are computed by sequences of fixed bytes that the linker replaces. */
@@ -205,6 +228,8 @@ static bool take_instruction(struct filter *f, const struct asm_statement *s)
         return true;
     }
     add_counts(&f->block.counts, &counts);
+    chain_add(&f->block.chain, s->word, s->operands);
+    if (flow == FLOW_BRANCH) close_loop(f, s->operands);
     if (flow != FLOW_ON) leave_block(f, flow != FLOW_AWAY);
     return true;
 }
@@ -220,6 +245,7 @@ static void take_label(struct filter *f, struct span name)
     }
     if (!f->now->code || (local && !label_set_has(f->referred, name))) return;
     leave_block(f, true);
+    if (f->block.nlabel < MOST_LABELS) f->block.label[f->block.nlabel++] = name;
     if (local) return;
     /* foo.cold is the part of foo that is seldom executed, and has its frame. */
     if (span_find(name, ".cold") < 0) f->frame = false;

@@ -253,7 +253,7 @@ static void count_memory(struct span m, struct span operands, int width, bool fr
 enum flow instruction_read(struct span m, struct span operands, bool frame,
                            struct block_counts *counts)
 {
-    struct block_counts c = {.instruction = 1};
+    struct block_counts c = {.instruction = 1, .issue = 1};
     const int width = vector_bytes(operands);
     const enum flow flow = flow_of(m, operands, &c);
     if (flow == FLOW_ON && m.n > 0) {

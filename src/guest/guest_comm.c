@@ -372,12 +372,19 @@ static void call_stage(struct comm *handle, int stage, const char *file, int lin
 
 static int64_t call_now_ps(struct comm *handle) { return comm_now_ps(rank_of(handle)->comm); }
 
-/* Memory of the run, given back when it ends: programs need not free. */
+/* Memory of the run, given back when it ends: programs need not free. It takes no simulated time;
+ * on a real processor the clock stands until the system has given every page. */
 static void *call_memory(struct comm *handle, int64_t bytes, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
     if (bytes < 0) stop(c, "asks for %lld bytes of memory", (long long)bytes);
-    return arena_take(rank_of(handle)->world->memory, (size_t)(bytes > 0 ? bytes : 1));
+    const size_t size = (size_t)(bytes > 0 ? bytes : 1);
+    if (c->type->pause == NULL) return arena_take(rank_of(handle)->world->memory, size);
+    c->type->pause(c, 1);
+    volatile char *memory = arena_take(rank_of(handle)->world->memory, size);
+    for (size_t i = 0; i < size; i += 4096) memory[i] = 0;
+    c->type->pause(c, 0);
+    return (void *)(uintptr_t)memory;
 }
 
 /* By number in the program's declaration, which its header names by an enumeration. */

@@ -236,19 +236,29 @@ static void barrier(struct comm *c)
 
 /* --- results ---------------------------------------------------------------------------------- */
 
+/* The stage's time is counted from a later moment: as if nothing had been done meanwhile. */
+static void clock_pause(struct comm *c, int begin)
+{
+    struct host_comm *h = mine(c);
+    const int64_t now = host_clock_ns();
+    if (begin) {
+        h->paused_ns = now;
+        return;
+    }
+    h->mark_ns += now - h->paused_ns;
+    h->times.published_ns += now - h->paused_ns;
+}
+
 /* Whoever asks is not part of the program: the clock stands meanwhile. */
 static void publish(struct comm *c, int output, int64_t first, int64_t n, const double *data)
 {
     struct host_comm *h = mine(c);
-    const int64_t begin = host_clock_ns();
     const struct host_place place = {output, first, n,
                                      (int64_t)(h->numbers.length / sizeof(double))};
+    clock_pause(c, 1);
     text_add_bytes(&h->places, (const char *)&place, sizeof place);
     if (n > 0) text_add_bytes(&h->numbers, (const char *)data, (size_t)n * sizeof *data);
-    /* The stage's time is counted from a later moment: as if nothing had been published. */
-    const int64_t took = host_clock_ns() - begin;
-    h->mark_ns += took;
-    h->times.published_ns += took;
+    clock_pause(c, 0);
 }
 
 /* Places are copied out: the text that holds them is bytes. */
@@ -303,6 +313,7 @@ static const struct comm_type host_type = {
     .stage = set_stage,
     .now_ps = now_ps,
     .publish = publish,
+    .pause = clock_pause,
     .elapse = elapse,
     .end_run = end_run,
     .mark = mark,

@@ -40,7 +40,7 @@ struct comm *host_comm_run_begin(struct host_comm *h, bool timed, int nstage,
 struct host_times {
     int64_t begin_ns, end_ns;         /* on this host's clock */
     int64_t stage_ns[RUN_MAX_STAGES]; /* they add up to the time from begin to end */
-    int64_t published_ns;             /* time that the clock stood for publishing: not in stages */
+    int64_t published_ns;             /* time that the clock stood: not in stages */
     int64_t preempted;                /* involuntary switches of this thread meanwhile */
     int64_t late_ns;                  /* how late this rank began, where all begin at one time */
     int64_t messages, bytes;          /* sent */

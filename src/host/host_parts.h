@@ -42,6 +42,7 @@ struct host_comm {
 
     int stage, nstage;
     int64_t mark_ns; /* since when the time belongs to `stage` */
+    int64_t paused_ns; /* since when the clock stands */
     int64_t switches;
     struct host_times times;
 

@@ -19,8 +19,11 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
     *d = (struct dynamics_run){.given = r->spec.kernel};
     d->kernel = omission_kernel(&r->spec, m, s, e);
     if (!d->kernel || !d->kernel->accepts(&r->spec, m, e)) return false;
+    /* Monitors cost the machine nothing, but a real processor their time: a real run is made
+     * without them, after a simulated one whose answer they judged. */
+    const bool watch = r->spec.program.cost != PROGRAM_COST_REAL;
     d->job = (struct kernel_job){
-        .spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = true};
+        .spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = watch};
     d->job.omit = omission_job(&r->spec, m, s);
     r->own = d;
     r->rank = &d->kernel->rank;

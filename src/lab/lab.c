@@ -76,6 +76,12 @@ void lab_fill(const struct lab *l, const char *template, struct text *out)
     }
 }
 
+/* Names of files are the same in the lesson and in the attempt. */
+const char *lab_scenario_file(enum lab_scenario s)
+{
+    return s == LAB_MEASURE ? "measure.yaml" : "scenario.yaml";
+}
+
 /* A text of lab.yaml with its numbers, kept as long as the lab. */
 static const char *filled(const struct lab *l, const char *template, struct arena *a)
 {
@@ -135,6 +141,7 @@ static bool take_question(struct lab *l, const struct node *q, const char *path,
                           struct err *e)
 {
     static const char *const wanted[] = {"text", "unit", "theory", "simulated"};
+    const char *run = document_text(q, "run");
     if (l->nquestion == LAB_QUESTIONS)
         return err_set_at(e, ERR_DATA, path, q->line, "more than %d questions", LAB_QUESTIONS);
     const char *value[4];
@@ -145,7 +152,15 @@ static bool take_question(struct lab *l, const struct node *q, const char *path,
             return err_set_at(e, ERR_DATA, path, q->line, "question '%s' has no '%s'", q->key,
                               wanted[i]);
     }
+    /* There is one more scenario and no list of them: lessons stay folders of five files. */
+    if (run[0] != '\0' && strcmp(run, "measure") != 0)
+        return err_set_at(e, ERR_DATA, path, q->line,
+                          "question '%s': run '%.40s': expected measure", q->key, run);
+    /* A lesson has the second scenario because a question asks for it, and for no other reason. */
+    const enum lab_scenario scenario = run[0] != '\0' ? LAB_MEASURE : LAB_SCENARIO;
+    l->measures = l->measures || scenario == LAB_MEASURE;
     l->question[l->nquestion++] = (struct lab_question){.name = q->key,
+                                                        .scenario = scenario,
                                                         .text = filled(l, value[0], a),
                                                         .unit = value[1],
                                                         .theory = filled(l, value[2], a),
@@ -339,7 +354,9 @@ static bool copy_file(const struct lab *l, const char *file, const char *folder,
 
 bool lab_copy(const struct lab *l, const char *folder, struct err *e)
 {
-    const char *const suffix[] = {"README.md", "scenario.yaml"};
+    const char *const suffix[] = {"README.md", lab_scenario_file(LAB_SCENARIO),
+                                  lab_scenario_file(LAB_MEASURE)};
+    const int files = l->measures ? 3 : 2;
     struct text answers = {0}, path = {0};
     /* The folder is made here, so that it is empty; one that is there is left as it is. */
     text_add(&path, "%s/answers.yaml", folder);
@@ -355,11 +372,11 @@ bool lab_copy(const struct lab *l, const char *folder, struct err *e)
     }
     /* The program first: it is what may be missing of a lesson that is being written. */
     bool fine = copy_file(l, l->program, folder, e) && new_file_write(path.s, &answers, e);
-    for (int i = 0; fine && i < 2; i++) fine = copy_file(l, suffix[i], folder, e);
+    for (int i = 0; fine && i < files; i++) fine = copy_file(l, suffix[i], folder, e);
     /* All or nothing: a student with half of a lesson would not know what is missing, and a second
      * try would find the folder there already. */
-    const char *const made[] = {l->program, "answers.yaml", suffix[0], suffix[1]};
-    for (int i = 0; !fine && i < 4; i++) {
+    const char *const made[] = {l->program, "answers.yaml", suffix[0], suffix[1], suffix[2]};
+    for (int i = 0; !fine && i < 2 + files; i++) {
         path.length = 0;
         text_add(&path, "%s/%s", folder, made[i]);
         unlink(path.s);

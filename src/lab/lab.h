@@ -2,7 +2,8 @@
  *
  * A lab is a folder labs/NAME with lab.yaml (title, goal, numbers, questions), README.md, the
  * program with a gap, NAME.c as a kernel and NAME-mpi.c as an ordinary MPI program, and
- * scenario.yaml.
+ * scenario.yaml. Questions with `run: measure` are about the runs of measure.yaml, a second
+ * scenario of the same program.
  * `@NUMBER@` in any of them stands for a number that the student's name chooses from a list, so
  * that neighbours have different ones; a number may follow from another (`k: {of: P, 8: 3, 16:
  * 4}`).
@@ -31,6 +32,7 @@ struct lab_question {
     const char *name, *text, *unit;
     const char *theory;    /* an SQL expression: the closed form */
     const char *simulated; /* an SQL query of one value: what the student's run says; "": nothing */
+    enum lab_scenario { LAB_SCENARIO, LAB_MEASURE } scenario; /* whose run is asked */
 };
 
 /* What `mimdsim lab draw` draws: with x a curve of y over x, for each value of `by`, of the
@@ -58,6 +60,7 @@ struct lab {
     struct lab_picture picture;
     int nslider;
     struct lab_slider slider[LAB_SLIDERS];
+    bool measures; /* a question is about measure.yaml */
 };
 
 /* One question of an attempt that was checked. */
@@ -87,6 +90,9 @@ int lab_names(struct arena *a, const char ***name);
  * with the nearest name), ERR_DATA (lab.yaml is damaged). */
 bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, struct arena *a,
               struct err *e);
+
+/* lab_scenario_file: "scenario.yaml" or "measure.yaml". */
+const char *lab_scenario_file(enum lab_scenario s);
 
 /* lab_fill: `template` with the lab's numbers in the place of every @NUMBER@, and without the lines
  * of the other kind of program, appended to *out. */

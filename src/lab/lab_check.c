@@ -89,13 +89,14 @@ static bool read_answers(struct lab_result *r, const struct lab *l, const struct
 
 /* Whether the attempt's scenario is that of the lesson: on another machine the closed forms are
  * wrong, and a machine could be chosen that makes a wrong program right. */
-static bool same_scenario(const struct lab *l, const char *folder, bool *same, struct err *e)
+static bool same_scenario(const struct lab *l, const char *folder, enum lab_scenario which,
+                          bool *same, struct err *e)
 {
     struct text path = {0}, template = {0}, wanted = {0}, found = {0};
-    text_add(&path, "%s/scenario.yaml", l->folder);
+    text_add(&path, "%s/%s", l->folder, lab_scenario_file(which));
     bool ok = text_read_file(&template, path.s, e);
     path.length = 0;
-    text_add(&path, "%s/scenario.yaml", folder);
+    text_add(&path, "%s/%s", folder, lab_scenario_file(which));
     ok = ok && text_read_file(&found, path.s, e);
     if (ok) lab_fill(l, template.s != NULL ? template.s : "", &wanted);
     *same = ok && wanted.length == found.length &&
@@ -107,10 +108,11 @@ static bool same_scenario(const struct lab *l, const char *folder, bool *same, s
 
 /* Run the attempt's scenario in a process of its own, as the student would; its table is not
  * shown, its messages are. */
-static bool run_scenario(const char *folder, const char *database, int *status, struct err *e)
+static bool run_scenario(const char *folder, enum lab_scenario which, const char *database,
+                         int *status, struct err *e)
 {
     struct text scenario = {0}, table = {0};
-    text_add(&scenario, "%s/scenario.yaml", folder);
+    text_add(&scenario, "%s/%s", folder, lab_scenario_file(which));
     const char *const word[] = {"/proc/self/exe", "run",     scenario.s, "-o",
                                 database,         "--quiet", "--force",  NULL};
     const bool ok = process_run(word, NULL, &table, status, e);
@@ -136,24 +138,39 @@ static const char *outcome(struct store *s, struct arena *a)
     return word;
 }
 
-/* What the run says of each question, where it ended without an error. */
-static bool look(const struct lab *l, struct lab_result *r, const char *database, struct arena *a,
-                 struct err *e)
+/* How the runs of measure.yaml ended, told as theirs. */
+static const char *measuring_ended(const char *ended, struct arena *a)
+{
+    struct text t = {0};
+    text_add(&t, "measure.yaml: %s", ended);
+    const char *kept = arena_text(a, t.s);
+    text_free(&t);
+    return kept;
+}
+
+/* What the run of a scenario says of each of its questions, where it ended without an error. How
+ * the first one ended is how the attempt did; of the second one it is told where the first was
+ * well. */
+static bool look(const struct lab *l, struct lab_result *r, enum lab_scenario which,
+                 const char *database, struct arena *a, struct err *e)
 {
     struct err missing;
     err_clear(&missing);
     /* A program that does not compile leaves no database; its messages have been shown. */
     struct store *s = store_open(database, STORE_READ, &missing);
-    r->program = "the program could not be run";
+    const char *ended = s != NULL ? outcome(s, a) : "the program could not be run";
+    if (which == LAB_SCENARIO) r->program = ended;
+    else if (strcmp(r->program, "ok") == 0 && strcmp(ended, "ok") != 0)
+        r->program = measuring_ended(ended, a);
     if (s == NULL) return true;
-    r->program = outcome(s, a);
     bool ok = true;
     /* Of a run that went wrong nothing is asked: its numbers would be taken for answers. A query
      * that gives no whole number is a mistake of the lesson, and is told as such. */
-    for (int i = 0; ok && i < l->nquestion && strcmp(r->program, "ok") == 0; i++) {
-        if (!r->answer[i].asked) continue;
+    for (int i = 0; ok && i < l->nquestion && strcmp(ended, "ok") == 0; i++) {
+        if (!r->answer[i].asked || l->question[i].scenario != which) continue;
         ok = whole_number(s, l->question[i].simulated, &r->answer[i].simulated, e);
-        r->answer[i].ran = ok;
+        /* A number that is to be measured is shown to who has written one. */
+        r->answer[i].ran = ok && (which == LAB_SCENARIO || r->answer[i].given);
     }
     store_close(s);
     return ok;
@@ -194,6 +211,41 @@ static const char *verdict_of(const struct lab_answer *x, struct arena *a)
     return x->ran || !x->asked ? "right" : "right, but the program did not end well";
 }
 
+/* Runs a scenario of the attempt and looks at what came of it. */
+static bool run_and_look(const struct lab *l, struct lab_result *r, const char *folder,
+                         enum lab_scenario which, struct arena *a, struct err *e)
+{
+    struct text path = {0};
+    int status;
+    text_add(&path, "%s/%s", folder, which == LAB_MEASURE ? "measure.db" : "lab.db");
+    /* The database of an earlier attempt would answer for this one. */
+    unlink(path.s);
+    const bool ok = run_scenario(folder, which, path.s, &status, e) &&
+                    look(l, r, which, path.s, a, e);
+    text_free(&path);
+    return ok;
+}
+
+/* Every scenario that questions are about, or none where one of them is not the lesson's. */
+static bool run_all(const struct lab *l, struct lab_result *r, const char *folder, struct arena *a,
+                    struct err *e)
+{
+    const enum lab_scenario last = l->measures ? LAB_MEASURE : LAB_SCENARIO;
+    /* Looked at before anything is run: half of an attempt would be judged by other rules. */
+    for (enum lab_scenario s = LAB_SCENARIO; s <= last; s++) {
+        bool same;
+        if (!same_scenario(l, folder, s, &same, e)) return false;
+        if (same) continue;
+        r->program =
+            s == LAB_MEASURE ? "not run: measure.yaml is not the lesson's, copy the lesson again"
+                             : "not run: scenario.yaml is not the lesson's, copy the lesson again";
+        return true;
+    }
+    for (enum lab_scenario s = LAB_SCENARIO; s <= last; s++)
+        if (!run_and_look(l, r, folder, s, a, e)) return false;
+    return true;
+}
+
 bool lab_attempt(struct lab *l, const char *folder, const struct node **answers, struct arena *a,
                  struct err *e)
 {
@@ -216,9 +268,6 @@ bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct
     if (!lab_attempt(&l, folder, &root, a, e)) return false;
     text_add(&path, "%s/answers.yaml", folder);
     const bool read = read_answers(r, &l, root, path.s, e);
-    path.length = 0;
-    text_add(&path, "%s/lab.db", folder);
-    const char *database = arena_text(a, path.s);
     text_free(&path);
     if (!read) return false;
     /* All questions stand in the result, answered or not. */
@@ -230,14 +279,7 @@ bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct
         r->answer[i].unit = l.question[i].unit;
         r->answer[i].asked = l.question[i].simulated[0] != '\0';
     }
-    /* The database of an earlier attempt would answer for this one. */
-    int status;
-    bool same;
-    unlink(database);
-    if (!evaluate_theory(&l, r, e) || !same_scenario(&l, folder, &same, e)) return false;
-    if (!same) r->program = "not run: scenario.yaml is not the lesson's, copy the lesson again";
-    else if (!run_scenario(folder, database, &status, e) || !look(&l, r, database, a, e))
-        return false;
+    if (!evaluate_theory(&l, r, e) || !run_all(&l, r, folder, a, e)) return false;
     /* Right is what the program and the student both have as the closed form has it. */
     for (int i = 0; i < r->nanswer; i++) {
         r->answer[i].verdict = verdict_of(&r->answer[i], a);

@@ -16,6 +16,9 @@ int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *coun
                            .trig = counts->trig,
                            .bytes = counts->bytes,
                            .call = counts->call};
+    const struct code_work code = {counts->issue, counts->chain_flop, counts->chain_cycle};
+    /* A machine has the finer prices, or one of an instruction. */
+    if (c->issue > 0) return ps_rounded(node_cost_fine_ps(c, &w, &code) * factor);
     return ps_rounded(node_cost_code_ps(c, &w, counts->instruction) * factor);
 }
 

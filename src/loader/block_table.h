@@ -28,14 +28,14 @@
 #define BLOCK_NOTE_SECTION ".note.mimdsim"
 #define BLOCK_NOTE_NAME "mimdsim"
 
-enum { BLOCK_TABLE_ABI = 1, BLOCK_NOTE_OBJECT = 1 };
+enum { BLOCK_TABLE_ABI = 2, BLOCK_NOTE_OBJECT = 1 };
 
 /* The bytes in front of the immediate. */
 #define BLOCK_ADD_OPCODE "\x4d\x8d\xbf"
 enum { BLOCK_ADD_OPCODE_BYTES = 3 };
 
-/* What one execution of a block does, in the classes of base/work.h and two more. The filter starts
- * a new block before a count would overflow. */
+/* What one execution of a block does, in the classes of base/work.h and five more. The filter
+ * starts a new block before a count would overflow. */
 struct block_counts {
     uint16_t instruction; /* instructions; a vector instruction counts once for each 8 bytes of its
                              registers */
@@ -47,6 +47,11 @@ struct block_counts {
     uint16_t call; /* calls; their instructions are counted as such, so that node_cost.h does not
                       price them */
     uint16_t bytes; /* loaded and stored, but for the stack frame and constants [B] */
+    uint16_t issue; /* instructions, each once, however wide */
+    uint16_t spare; /* 0 */
+    uint16_t chain_flop;  /* of a loop that is one block: its longest chain (compile/chain.h), in
+                             floating-point additions */
+    uint16_t chain_cycle; /* and in nominal cycles of other instructions */
 };
 
 struct block_entry {
@@ -61,7 +66,7 @@ enum block_kind {
                   multiplies it */
 };
 
-_Static_assert(sizeof(struct block_entry) == 20,
-               "entries are written by the assembler as one long and eight words");
+_Static_assert(sizeof(struct block_entry) == 28,
+               "entries are written by the assembler as one long and twelve words");
 
 #endif

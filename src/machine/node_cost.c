@@ -40,5 +40,10 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .instruction = instruction_ps(s),
         .moved = nearest_ps(s),
         .roofline = s->model == NODE_ROOFLINE,
+        .issue = cycles_ps(s->code.issue, s->clock),
+        .code_div = cycles_ps(s->code.div > 0 ? s->code.div : s->div_cycles, s->clock),
+        .code_root = cycles_ps(s->code.root > 0 ? s->code.root : s->sqrt_cycles, s->clock),
+        .chain = cycles_ps(s->code.chain, s->clock),
+        .step = cycles_ps(s->code.step, s->clock),
     };
 }

@@ -15,6 +15,8 @@ struct node_cost {
     double instruction; /* one instruction of compiled code, whatever it does */
     double moved;       /* roofline: a byte loaded or stored, where the working set lies */
     bool roofline;      /* `byte` does not count, `moved` does */
+    /* The same, finer; issue 0: not known. */
+    double issue, code_div, code_root, chain, step;
 };
 
 /* node_cost_make: the costs of `s`; with the roofline model those of data in the first cache
@@ -72,6 +74,29 @@ static inline double node_cost_code_ps(const struct node_cost *c, const struct w
                  each = c->roofline ? c->moved : 0.5 * c->byte, memory = (double)w->bytes * each;
     const double longer = arithmetic > issue ? arithmetic : issue;
     return longer > memory ? longer : memory;
+}
+
+/* What a piece of code does beside its work: instructions, each once, and the longest chain of a
+ * loop: additions, and nominal cycles of other instructions. */
+struct code_work {
+    unsigned issue, chain_flop, chain_cycle;
+};
+
+/* node_cost_fine_ps: the same by the finer prices, where issue > 0. Instructions are issued one
+ * after the other (those of elementary functions, too); meanwhile the divider, the chain of a loop
+ * and the memory work at their own pace, so that the longest of four counts. The counter in each
+ * block waits for that of the block before: a step at least. */
+static inline double node_cost_fine_ps(const struct node_cost *c, const struct work *w,
+                                       const struct code_work *code)
+{
+    const double issue = code->issue * c->issue + (double)w->trig * c->trig,
+                 divide = (double)w->div * c->code_div + (double)w->sqrt * c->code_root,
+                 each = c->roofline ? c->moved : 0.5 * c->byte, memory = (double)w->bytes * each;
+    double chain = code->chain_flop * c->chain + code->chain_cycle * c->step;
+    if (code->issue > 0 && chain < c->step) chain = c->step;
+    double longest = chain > issue ? chain : issue;
+    if (divide > longest) longest = divide;
+    return memory > longest ? memory : longest;
 }
 
 #endif

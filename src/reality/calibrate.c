@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "reality/jumps.h"
 #include "reality/segments.h"
 
 double calibration_clock(void)
@@ -21,6 +22,25 @@ double calibration_clock(void)
         if (sscanf(line, "cpu MHz : %lf", &mhz) != 1) mhz = 0;
     if (f != NULL) fclose(f);
     return mhz > 0 ? round(mhz) * 1e6 : 1e9;
+}
+
+struct machine_spec calibration_machine(const struct calibration *c,
+                                        const struct machine_spec *base)
+{
+    struct machine_spec m = *base;
+    struct fitted_segment fitted[SOFTWARE_MAX_SEGMENTS];
+    const struct rates *r = &c->rates;
+    m.node = (struct node_spec){.flop_rate = r->flop > 0 ? 1 / r->flop : 1e15,
+                                .clock = c->clock,
+                                .div_cycles = r->div * c->clock,
+                                .sqrt_cycles = r->sqrt * c->clock,
+                                .trig_cycles = r->trig * c->clock,
+                                .call_time = r->call,
+                                .copy_bandwidth = 1 / r->copy};
+    m.software = (struct software_spec){.eager_bytes = -1, .barrier = BARRIER_SOFTWARE};
+    m.software.nsegment = c->has_messages ? segments_of(&c->messages, fitted) : 0;
+    for (int i = 0; i < m.software.nsegment; i++) m.software.segment[i] = fitted[i].segment;
+    return m;
 }
 
 /* "class: measured, source: ..." behind a value; what is said of all is said once, at the top. */
@@ -40,6 +60,22 @@ static void cycles(struct text *t, const char *key, double price, const char *so
     leaf(t, "  ", key, value, source, c);
 }
 
+/* The finer prices of programs in one file, all of one fit. */
+static void add_code(const struct calibration *c, struct text *t)
+{
+    const struct code_rates *r = &c->code;
+    char value[48], source[160];
+    snprintf(source, sizeof source, "fit to %d loops, residual %.1f %% median, %.1f %% largest",
+             r->n, 100 * r->median_residual, 100 * r->residual);
+    text_add(t, "  code:\n");
+    for (int i = 0; i < CODE_PRICES; i++) {
+        /* Nothing at all would mean something else. */
+        const double price = fmax(r->price[i], 1e-6);
+        snprintf(value, sizeof value, "%.4g cycles", price);
+        leaf(t, "    ", code_price_name(i), value, source, c);
+    }
+}
+
 /* Rates: a price of 0 is a class of operations that the fit gave nothing. */
 static void add_node(const struct calibration *c, struct text *t)
 {
@@ -57,8 +93,10 @@ static void add_node(const struct calibration *c, struct text *t)
     cycles(t, "div", r->div, source, c);
     cycles(t, "sqrt", r->sqrt, "a loop of roots, each of the one before, least time", c);
     cycles(t, "trig", r->trig, "a loop over 512 angles, least time", c);
-    cycles(t, "instruction", r->instruction,
-           "a scalar product, five instructions an element, least time", c);
+    if (c->has_code) add_code(c, t);
+    else
+        cycles(t, "instruction", r->instruction,
+               "a scalar product, five instructions an element, least time", c);
     snprintf(value, sizeof value, "%.4g ns", r->call * 1e9);
     leaf(t, "  ", "call", value, source, c);
     text_add(t, "  copy:\n");
@@ -85,6 +123,44 @@ static void add_segment(const struct fitted_segment *f, struct text *t)
              f->points, 100 * f->one_way, 100 * f->send, 100 * f->recv);
 }
 
+/* Which algorithms are faster than those that would be chosen. What a barrier and the collectives
+ * take follows from their messages; how well, the residual says. */
+static void add_collectives(const struct calibration *c, struct text *t)
+{
+    const struct collective_times *x = &c->collectives;
+    char source[200], value[560];
+    snprintf(source, sizeof source,
+             "%d collectives by algorithm and size on %d processors; predicted from the segments "
+             "with a residual of %.1f %% median, %.1f %% largest",
+             x->n, x->nrank, 100 * x->median_residual, 100 * x->residual);
+    snprintf(value, sizeof value, "\"%s\"", x->rules);
+    if (x->rules[0] != '\0') leaf(t, "  ", "collectives", value, source, c);
+    else text_add(t, "# No collective is faster by another algorithm: %s.\n", source);
+    if (x->left_out > 0)
+        text_add(t,
+                 "# %d more were left out: fewer than 3 of their repetitions were undisturbed.\n",
+                 x->left_out);
+    text_add(t, "# Barrier and collectives on %d processors [us]: measured, predicted; samples - "
+                "disturbed\n", x->nrank);
+    for (int i = 0; i < x->n; i++) {
+        const struct collective_sample *s = &x->sample[i];
+        text_add(t, "#   %-14s %-26s %8lld B %10.3f %10.3f  %d - %d\n", collective_name(s->kind),
+                 s->algorithm->name, (long long)s->bytes, s->measured * 1e6, s->predicted * 1e6,
+                 s->samples, s->disturbed);
+    }
+}
+
+/* Where the time of a message leaves its line, beside the switch to rendezvous. */
+static void add_jumps(const struct messages *m, struct text *t)
+{
+    int first[SOFTWARE_MAX_SEGMENTS];
+    const int n = jumps_find(m, first);
+    for (int k = 1; k < n; k++)
+        text_add(t, "# Between %lld and %lld B a message changes its line: %+.0f %%.\n",
+                 (long long)m->point[first[k] - 1].bytes, (long long)m->point[first[k]].bytes,
+                 100 * jumps_height(m, first[k]));
+}
+
 static void add_software(const struct calibration *c, struct text *t)
 {
     struct fitted_segment segment[SOFTWARE_MAX_SEGMENTS];
@@ -101,6 +177,8 @@ static void add_software(const struct calibration *c, struct text *t)
     if (m->eager_most == INT64_MAX)
         text_add(t, "# No size that was tried waits for its receive.\n");
     else text_add(t, "# Messages up to %lld B are sent at once.\n", (long long)m->eager_most);
+    add_jumps(m, t);
+    if (c->has_collectives) add_collectives(c, t);
 }
 
 /* What was measured, one line each, for people who want to judge the fits. */
@@ -126,6 +204,14 @@ static void add_kernels(const struct calibration *c, struct text *t)
     }
     text_add(t, "# Fixed cost of a run: %.3f us, which no prediction adds.\n",
              c->rates.fixed * 1e6);
+    if (c->has_code)
+        text_add(t, "\n# Loops of programs in one file: measured, by the prices [us]; samples - "
+                    "disturbed\n");
+    for (int i = 0; c->has_code && i < c->code.n; i++) {
+        const struct code_sample *s = &c->code.sample[i];
+        text_add(t, "#   %-36s %10.3f %10.3f  %d - %d\n", s->what, s->seconds * 1e6,
+                 s->fitted * 1e6, s->samples, s->disturbed);
+    }
 }
 
 void calibration_text(const struct calibration *c, struct text *t)

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "measure/real_row.h"
+#include "reality/jumps.h"
 
 enum {
     TAG = 3,
@@ -241,7 +242,7 @@ static bool find_eager_most(struct bench *b, int64_t *most, struct err *e)
 
 /* --- all sizes -------------------------------------------------------------------------------- */
 
-/* Sizes that groups of segments.c divide, with those on both sides of the switch. */
+/* Powers of two and nothing, with the sizes on both sides of the switch. */
 static int choose_sizes(int64_t eager_most, struct message_point *p)
 {
     static const int64_t size[] = {0,    8,     64,    256,   512,    1024,   2048,   4096,
@@ -283,6 +284,20 @@ static bool measure_point(struct bench *b, struct message_point *p, struct err *
     return ok;
 }
 
+/* Between two sizes that lie on lines far apart, more sizes by halving, until it is known where the
+ * one line ends. All processes have the same numbers, and so come to the same sizes. */
+static bool close_jumps(struct bench *b, struct messages *out, struct err *e)
+{
+    for (int64_t size; out->n < MESSAGES_SIZES && (size = jumps_open(out)) >= 0;) {
+        struct message_point p = {.bytes = size, .rendezvous = size > out->eager_most};
+        if (!measure_point(b, &p, e)) return false;
+        int i = out->n++;
+        for (; i > 0 && out->point[i - 1].bytes > size; i--) out->point[i] = out->point[i - 1];
+        out->point[i] = p;
+    }
+    return true;
+}
+
 bool messages_measure(const struct hosts *hosts, struct host_comm *comm, int samples,
                       struct messages *out, struct err *e)
 {
@@ -299,6 +314,7 @@ bool messages_measure(const struct hosts *hosts, struct host_comm *comm, int sam
     bool ok = find_eager_most(&b, &out->eager_most, e);
     if (ok) out->n = choose_sizes(out->eager_most, out->point);
     for (int i = 0; ok && i < out->n; i++) ok = measure_point(&b, &out->point[i], e);
+    ok = ok && close_jumps(&b, out, e);
     b.bytes = 0;
     ok = ok && measure(&b, barrier_time, "barrier", &unused, &out->barrier, e);
     free(b.out);

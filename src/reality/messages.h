@@ -13,7 +13,7 @@
 #include "base/err.h"
 #include "host/host_comm.h"
 
-enum { MESSAGES_SIZES = 24 };
+enum { MESSAGES_SIZES = 48 };
 
 /* One size [s]. */
 struct message_point {

@@ -21,6 +21,7 @@ static const char *const names[PRICES] = {"node.flop_rate",
                                           "node.call",
                                           "node.copy",
                                           "node.instruction",
+                                          "node.code",
                                           "software send overhead",
                                           "software receive overhead",
                                           "latency",
@@ -79,6 +80,13 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
         return;
     case PRICE_INSTRUCTION:
         n->instruction_cycles *= factor;
+        return;
+    case PRICE_CODE:
+        n->code = (struct code_spec){.issue = n->code.issue * factor,
+                                     .div = n->code.div * factor,
+                                     .root = n->code.root * factor,
+                                     .chain = n->code.chain * factor,
+                                     .step = n->code.step * factor};
         return;
     default:
         break;

@@ -16,6 +16,7 @@ enum price_group {
     PRICE_CALL,
     PRICE_COPY,
     PRICE_INSTRUCTION,
+    PRICE_CODE,
     PRICE_SEND,
     PRICE_RECV,
     PRICE_LATENCY,

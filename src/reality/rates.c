@@ -161,14 +161,13 @@ bool rates_fit(struct rates *r)
     return true;
 }
 
-/* One point of the plan as a sample. */
-static bool take_sample(const struct run_spec *spec, struct host_comm *comm,
-                        const struct real_order *order, struct run_cache *cache,
-                        struct rate_sample *s, struct err *e)
+bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int samples,
+                      double seconds, struct run_cache *cache, struct rate_sample *s, struct err *e)
 {
+    const struct real_order order = {samples, seconds};
     struct arena *a = arena_create();
     struct real_result *r = TAKE(a, 1, struct real_result);
-    bool ok = run_real(spec, NULL, comm, order, cache, a, r, e);
+    bool ok = run_real(spec, NULL, comm, &order, cache, a, r, e);
     if (ok && r->status != RUN_OK)
         ok = err_set(e, ERR_CHECK, "%s: %.600s", spec->kernel.name, r->text);
     if (ok) {
@@ -190,14 +189,13 @@ static bool take_sample(const struct run_spec *spec, struct host_comm *comm,
 bool rates_measure(const struct plan *p, int samples, double seconds, bool quiet, struct rates *out,
                    struct err *e)
 {
-    const struct real_order order = {samples, seconds};
     struct host_comm *comm = host_comm_create(NULL, e);
     struct run_cache *cache = run_cache_create();
     struct progress progress = progress_make("kernels", p->nrun, quiet);
     memset(out, 0, sizeof *out);
     bool ok = true;
     for (int i = 0; ok && i < p->nrun && i < RATES_MOST; i++) {
-        ok = take_sample(&p->run[i], comm, &order, cache, &out->sample[out->n], e);
+        ok = rate_sample_take(&p->run[i], comm, samples, seconds, cache, &out->sample[out->n], e);
         out->n += ok;
         progress_show(&progress, i + 1);
     }

@@ -5,7 +5,9 @@
 
 #include "base/err.h"
 #include "base/work.h"
+#include "host/host_comm.h"
 #include "plan/plan.h"
+#include "run/run.h"
 
 enum { RATES_MOST = 64 };
 
@@ -13,7 +15,6 @@ enum { RATES_MOST = 64 };
 struct rate_sample {
     char what[64];       /* "dynamics, thomas, n = 64" */
     struct work work;    /* counted */
-    double instructions; /* of compiled blocks; 0: a built-in kernel */
     double seconds;      /* median of the undisturbed repetitions */
     int samples, disturbed;
 };
@@ -27,6 +28,13 @@ struct rates {
     int n;
     struct rate_sample sample[RATES_MOST]; /* (n) */
 };
+
+/* rate_sample_take: one point, `spec`, on one rank in this process: `samples` undisturbed
+ * repetitions, fewer after `seconds`. ERR_BUSY when fewer than 3 are undisturbed; else as run_real.
+ */
+bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int samples,
+                      double seconds, struct run_cache *cache, struct rate_sample *s,
+                      struct err *e);
 
 /* rates_measure: run the points of plan `p` on one rank in this process, each for at most `seconds`
  * after at least a few repetitions, and fit prices to them. ERR_BUSY when the host disturbs too

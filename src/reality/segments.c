@@ -1,17 +1,12 @@
 /* segments.c - see segments.h.
  *
- * Groups of sizes are fixed, since measured times have more steps than eight segments: short, one
- * page, the first and the second level of caches, beyond. The switch from eager to rendezvous,
- * which is measured (messages.h), divides the group that it falls into. */
+ * Where one segment ends and the next begins follows from the measured times (jumps.h). */
 #include "reality/segments.h"
 
 #include <math.h>
 
 #include "reality/fit.h"
-
-/* First sizes of the groups. */
-static const int64_t group_begin[] = {0, 1024, 8192, 131072, 1048576};
-enum { GROUPS = sizeof group_begin / sizeof *group_begin };
+#include "reality/jumps.h"
 
 /* The points of one segment as columns. */
 struct columns {
@@ -41,11 +36,12 @@ static double gap_of(const struct columns *c, double per_byte)
 {
     double gap = INFINITY;
     for (int i = 0; i < c->n; i++) {
+        if (c->train[i] <= 0) continue; /* of long messages no trains are sent */
         const double ends = fmax(c->send[i], c->recv[i]);
         const double g = c->train[i] > ends ? c->train[i] - per_byte * c->bytes[i] : 0;
         gap = fmin(gap, fmax(g, 0));
     }
-    return gap;
+    return isinf(gap) ? 0 : gap;
 }
 
 /* Eager: the four lines. */
@@ -99,25 +95,14 @@ static double one_way_residual(const struct columns *c, const struct software_se
     return most;
 }
 
-/* A new segment begins with a group, and where the protocol changes. */
-static bool begins(const struct messages *m, int i)
-{
-    if (i == 0) return true;
-    if (m->point[i].rendezvous != m->point[i - 1].rendezvous) return true;
-    for (int k = 0; k < GROUPS; k++)
-        if (m->point[i].bytes >= group_begin[k] && m->point[i - 1].bytes < group_begin[k])
-            return true;
-    return false;
-}
-
 int segments_of(const struct messages *m, struct fitted_segment *out)
 {
-    int n = 0;
+    int n = 0, first[SOFTWARE_MAX_SEGMENTS];
+    const int pieces = jumps_find(m, first);
     double short_recv = 0, short_latency = 0;
-    for (int i = 0, end; i < m->n && n < SOFTWARE_MAX_SEGMENTS; i = end) {
+    for (int piece = 0; piece < pieces; piece++) {
         struct columns c = {.n = 0};
-        end = i + 1;
-        while (end < m->n && !begins(m, end)) end++;
+        const int i = first[piece], end = piece + 1 < pieces ? first[piece + 1] : m->n;
         for (int k = i; k < end; k++) add_point(&c, &m->point[k]);
         struct fitted_segment *s = &out[n++];
         *s = (struct fitted_segment){.points = c.n, .segment = {.from = m->point[i].bytes}};

@@ -159,6 +159,9 @@ static void compare(struct real *r, const struct program_run *run)
         int64_t n;
         const double *x = program_answer(run, i, &n);
         double largest = 0, worst = 0;
+        /* What a built-in program does not ask for here is what its monitors saw in the simulation
+         * (kernel.h, watch). */
+        if (x == NULL && !r->spec->kernel.own) continue;
         if (x == NULL) n = 0;
         if (n != k->n) {
             out->same_bits = false;

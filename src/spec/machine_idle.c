@@ -258,6 +258,12 @@ const char *machine_idle_in_programs(const struct run_spec *r)
     return "no program puts or gets; `mimdsim validate` does";
 }
 
+/* The finer prices of code act together, or not at all. */
+const char *machine_idle_without_code(const struct run_spec *r)
+{
+    return r->machine.node.code.issue > 0 ? NULL : "node.code.issue is 0";
+}
+
 const char *machine_idle_without_collectives(const struct run_spec *r)
 {
     return kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE)

@@ -44,6 +44,7 @@ const char *machine_idle_at_loggp(const struct run_spec *r);
 const char *machine_idle_unless_background(const struct run_spec *r);
 const char *machine_idle_in_runs(const struct run_spec *r);
 const char *machine_idle_in_programs(const struct run_spec *r);
+const char *machine_idle_without_code(const struct run_spec *r);
 const char *machine_idle_without_collectives(const struct run_spec *r);
 const char *machine_idle_unless_roofline(const struct run_spec *r);
 

@@ -177,6 +177,26 @@ static const struct field fields[] = {
      .max = 1e6, .fallback = "0 cycles",
      .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
             "node.flop_rate tells that several are issued at once"},
+    /* Where the first is given, the five hold together for blocks of compiled code, in the place of
+     * node.instruction and node.flop_rate (machine/node_cost.h). Machine files that calibrate
+     * writes give them; those of machines that nobody has at hand do not, since no source states
+     * what a chain of additions takes. */
+    {.key = "node.code.issue", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.issue),
+     .min = 0, .max = 1e6, .fallback = "0 cycles",
+     .doc = "programs made by mimdsim cc, finer: one instruction that waits for nothing, however "
+            "wide; 0: node.instruction and node.flop_rate hold"},
+    {.key = "node.code.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.div),
+     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+     .doc = "a division where none waits for the one before; 0: node.div"},
+    {.key = "node.code.root", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.root),
+     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+     .doc = "a square root, likewise; 0: node.sqrt"},
+    {.key = "node.code.chain", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.chain),
+     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+     .doc = "a floating-point addition that waits for the one before it through a loop"},
+    {.key = "node.code.step", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.step),
+     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+     .doc = "a nominal cycle of the other instructions of such a chain (docs/compiler.md)"},
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
      .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},

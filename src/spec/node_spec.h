@@ -34,6 +34,13 @@ struct node_spec {
     double trig_cycles; /* one sine or cosine [cycles] */
     double instruction_cycles; /* one instruction of a program compiled by `mimdsim cc` [cycles], 0:
                                   node_cost.c */
+    struct code_spec {
+        double issue; /* one instruction that waits for nothing, 0: instruction_cycles hold */
+        double div;   /* one division where none waits for the one before */
+        double root;  /* one square root, likewise */
+        double chain; /* floating-point addition that waits for the one before it in a loop */
+        double step;  /* nominal cycle of other instructions that do */
+    } code;           /* programs compiled by `mimdsim cc`, finer [cycles] (node_cost.h) */
     double call_time;          /* overhead of one small operator call [s] */
     double copy_bandwidth;     /* memory copies [B/s] */
     enum node_model model;

@@ -18,9 +18,9 @@ END
 
 # blocks FILE: how many counters its code has.
 blocks() { objdump -d "$1" | grep -c 'lea  *0x0(%r15),%r15'; }
-# entries FILE: how many entries its table has, of 20 bytes each.
+# entries FILE: how many entries its table has, of 28 bytes each.
 entries() {
-    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 20))
+    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 28))
 }
 
 @test "questions are answered by gcc" {
@@ -59,6 +59,19 @@ entries() {
     [ $(($(blocks prog) + 3)) -eq "$(entries prog)" ] # guest/memory.S has three rates
     [ "$(entries prog)" -ge 3 ]
     readelf -n prog | grep -q mimdsim
+}
+
+@test "an image whose table is of other rules is refused, not read for what it is not" {
+    command -v objcopy >/dev/null || skip "no objcopy"
+    echo 'int main(void) { return 0; }' >three.c
+    works mimdsim cc -O2 -o prog three.c
+    works mimdsim mpirun -n 2 ./prog
+    # the first word behind the name in the note of an object
+    objcopy --dump-section .note.mimdsim=note prog
+    printf '\001' | dd of=note bs=1 seek=20 conv=notrunc status=none
+    objcopy --update-section .note.mimdsim=note prog old
+    fails_with 65 mimdsim mpirun -n 2 ./old
+    stderr_says "was made by another version of \`mimdsim cc\` (rules 1, here 2): compile it again"
 }
 
 @test "an object of another compiler is refused by name" {

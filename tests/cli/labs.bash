@@ -5,8 +5,8 @@ labs='broadcast cannon deadlock dynamics matrix-multiply prefix-sum ring sample-
 # answer FOLDER QUESTION VALUE: writes a prediction.
 answer() { sed -i "s/^  $2:.*/  $2: $3/" "$1/answers.yaml"; }
 
-# number FOLDER KEY: what scenario.yaml of an attempt with a kernel says.
-number() { sed -n "s/.*\b$2: *{*\(overhead: \)*\([0-9]*\).*/\2/p" "$1/scenario.yaml" | head -n 1; }
+# number FOLDER KEY [FILE]: what scenario.yaml, or another file, of an attempt with a kernel says.
+number() { sed -n "s/.*\b$2: *{*\(overhead: \)*\([0-9]*\).*/\2/p" "$1/${3:-scenario.yaml}" | head -n 1; }
 
 # solve_program FOLDER: the solution in the place of the gap.
 solve_program() { sh "$MIMDSIM_SRCDIR/labs/solutions/solve.sh" "$1"; }
@@ -21,10 +21,25 @@ solve() {
     while [ $((q * q)) -lt "${P:-1}" ]; do q=$((q + 1)); done
     local one=$(((2 * o + L) * 1000000 + (${b:-8} - 1) * G * 1000))
     case $2 in
-    ring) set -- messages "$P" bytes $((P * b)) one-message $one whole-round $((P * one)) ;;
+    ring)
+        set -- messages "$P" bytes $((P * b)) one-message $one whole-round $((P * one)) \
+            measured-G $(($(number "$f" gap_per_byte measure.yaml) * 1000)) \
+            measured-o $(($(number "$f" send measure.yaml) * 1000000)) \
+            measured-L $(($(number "$f" end_latency measure.yaml) * 1000000)) \
+            measured-g $(($(number "$f" gap measure.yaml) * 1000000)) ;;
     broadcast)
         set -- messages $((P - 1)) root-messages $k tree-time $((k * one)) \
-            star-time $(((P - 2) * (g * 1000000 + (b - 1) * G * 1000) + one)) ;;
+            star-time $(((P - 2) * (g * 1000000 + (b - 1) * G * 1000) + one))
+        local B S s time most=0 best=0
+        B=$(number "$f" bytes measure.yaml) S=$(sed -n 's/.*chain of ranks in \([0-9]*\) segments.*/\1/p' "$f/answers.yaml")
+        for s in 1 2 4 8 16 32 64 128 256; do
+            local byte=$(((B / s - 1) * G * 1000)) apart=$((2 * o * 1000000))
+            [ $apart -ge $((g * 1000000 + byte)) ] || apart=$((g * 1000000 + byte))
+            time=$(((P - 1) * ((2 * o + L) * 1000000 + byte) + (s - 1) * apart))
+            [ $most -ne 0 ] && [ $time -ge $most ] || { most=$time best=$s; }
+            [ $s -ne "$S" ] || set -- "$@" pipeline-time $time
+        done
+        set -- "$@" best-segments $best ;;
     prefix-sum) set -- rounds $k messages $((P * k - (P - 1))) time $((k * one)) ;;
     stencil)
         set -- messages $((2 * (P - 1) * steps)) bytes $((2 * (P - 1) * steps * n * 8)) \

@@ -13,7 +13,7 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
         stdout_says "$lab "
         for file in README.md lab.yaml scenario.yaml "$lab.c" "$lab-mpi.c"; do [ -s "$MIMDSIM_SRCDIR/labs/$lab/$file" ]; done
         # what the student has is asked for by its name in the text, and every question has its row
-        for question in $(sed -n '/^questions:/,/^picture/s/^  \([a-z-]*\):$/\1/p' "$MIMDSIM_SRCDIR/labs/$lab/lab.yaml"); do
+        for question in $(sed -n '/^questions:/,/^picture/s/^  \([A-Za-z-]*\):$/\1/p' "$MIMDSIM_SRCDIR/labs/$lab/lab.yaml"); do
             grep -q "^| $question |" "$MIMDSIM_SRCDIR/labs/$lab/README.md" || { echo "$lab: $question"; return 1; }
         done
         grep -q 'GAP' "$MIMDSIM_SRCDIR/labs/$lab/$lab.c"
@@ -41,7 +41,7 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     cp ring/answers.yaml solved
     answer ring bytes 7
     fails_with 1 mimdsim lab check ring
-    stdout_says '3 of 4 right'
+    stdout_says '7 of 8 right'
     grep -q '^bytes .* wrong: .* % too small$' <<<"$output"
     # a mistaken unit is told as such
     answer ring bytes "$(sed -n 's/^  bytes: //p' solved)000"
@@ -78,7 +78,7 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     fails_with 66 mimdsim lab grade none a
     grep -q ' ok$' <<<"$output"
     fails_with 1 mimdsim lab check a b --json
-    [ "$(grep -o '"right": 4' <<<"$output" | wc -l)" -eq 1 ]
+    [ "$(grep -o '"right": 8' <<<"$output" | wc -l)" -eq 1 ]
 }
 
 @test "bad input is refused, and nothing is lost" {
@@ -132,9 +132,30 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     sed -i 's/gap_per_byte: .*/gap_per_byte: 1 ns\/B/' ring/scenario.yaml
     fails_with 1 mimdsim lab check ring
     stdout_says "program: not run: scenario.yaml is not the lesson's"
-    stdout_says '0 of 4 right'
+    stdout_says '0 of 8 right'
     rm ring/scenario.yaml
     fails_with 66 mimdsim lab check ring
+}
+
+@test "the second scenario is the lesson's as well, and its runs are told apart" {
+    works mimdsim lab broadcast it --variant eve
+    [ -s it/measure.yaml ]
+    solve it broadcast
+    # a pipeline that is not there: the tree is right, and the questions about the long message are not
+    works mimdsim lab broadcast half --variant eve
+    cp it/answers.yaml half
+    sed '/send_pipeline(struct comm/,/^}/s/comm_send/(void)0; if (0) comm_send/' it/broadcast.c >half/broadcast.c
+    fails_with 1 mimdsim lab check half
+    stdout_says '4 of 6 right'
+    stdout_says 'program: measure.yaml: '
+    [ "$(grep -c 'right, but the program did not end well' <<<"$output")" -eq 2 ]
+    sed -i 's/^ranks: .*/ranks: 3/' it/measure.yaml
+    fails_with 1 mimdsim lab check it
+    stdout_says "program: not run: measure.yaml is not the lesson's"
+    rm it/measure.yaml
+    fails_with 66 mimdsim lab check it
+    # a lesson without a second scenario has none
+    works mimdsim lab deadlock && [ ! -e deadlock/measure.yaml ]
 }
 
 @test "how a program ended is told once, and with its place" {

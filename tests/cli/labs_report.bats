@@ -51,7 +51,7 @@ out() { grep -qF "out: $1" seen || { echo "not there: $1"; grep -a 'out: ' seen;
     printf 'I would halve L: </div><script>alert(1)</script> & more\n' >it/notes.md
     works mimdsim lab report it && stdout_is it/report.html
     page=it/report.html
-    grep -qF '<strong>4 of 4 right.</strong>' $page
+    grep -qF '<strong>8 of 8 right.</strong>' $page
     grep -qF 'variant of <strong>Ann &lt;b&gt;&amp;amp;</strong>' $page
     grep -qF 'I would halve L: &lt;/div&gt;&lt;script&gt;alert(1)' $page
     grep -qF 'comm_recv(c, me - 1, 0, token, bytes);' $page
@@ -102,7 +102,7 @@ out() { grep -qF "out: $1" seen || { echo "not there: $1"; grep -a 'out: ' seen;
     solved ring a --variant '=1+1'
     works mimdsim lab grade a --csv
     [ "${lines[0]//$'\r'/}" = folder,lab,student,right,questions,program ]
-    [ "${lines[1]//$'\r'/}" = "a,ring,'=1+1,4,4,ok" ]
+    [ "${lines[1]//$'\r'/}" = "a,ring,'=1+1,8,8,ok" ]
     works mimdsim lab --grade a && grep -q '^a .* ok$' <<<"$output"
     fails_with 66 mimdsim lab --grade a none
 }

@@ -44,3 +44,16 @@ right() {
         works mpicc -Wall -Wextra -Werror -o "$lab/real" "$lab/$lab-mpi.c" -lm
     done
 }
+
+@test "the numbers of the unknown machine are found from measured times alone" {
+    for kind in '' --mpi; do
+        for student in '' 'Carla de la Cruz' bob; do
+            works mimdsim lab ring "it$kind$student" ${student:+--variant "$student"} $kind
+            solve_program "it$kind$student"
+            MIMDSIM=$MIMDSIM works sh "$MIMDSIM_SRCDIR/labs/solutions/measure-ring.sh" "it$kind$student"
+            fails_with 1 mimdsim lab check "it$kind$student"
+            stdout_says '4 of 8 right'
+            [ "$(grep -c '^measured-.* right$' <<<"$output")" -eq 4 ]
+        done
+    done
+}

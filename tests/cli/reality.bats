@@ -21,6 +21,13 @@ calibrated() {
     [ "$(grep -c 'value:' my.yaml)" -eq "$(grep 'value:' my.yaml | grep -c "class: measured.*$(uname -n), 20..-..-..")" ]
     for key in flop_rate div sqrt trig bandwidth; do grep -q "$key: {value" my.yaml; done
     grep -q 'residual .* median, .* largest' my.yaml
+    # The code of programs in one file, and the collectives; each with what it was fitted to.
+    if command -v gcc >/dev/null; then
+        for key in issue div root chain step; do grep -q "^    $key: {value: .* cycles, .*fit to .* loops, residual" my.yaml; done
+        [ "$(grep -c '^#   calibrate-code, loop = ' my.yaml)" -eq 12 ]
+    fi
+    grep -q 'collectives by algorithm and size on 2 processors; predicted from the segments with a residual of' my.yaml
+    [ "$(grep -c '^#   allreduce ' my.yaml)" -ge 1 ]
     # Messages between two processes of a computer take between 20 ns and 5 ms, and large ones longer.
     works mimdsim run pingpong -m my.yaml --set ranks=2 --set kernel.message='[0 B, 64 KiB, 1 MiB]' -o p.db -q
     sql_is p.db "SELECT count(*), min(measured_s) > 2e-8, max(measured_s) < 5e-3, max(measured_s) > 5 * min(measured_s)
@@ -84,6 +91,39 @@ planted() {
     fails_with 64 mimdsim predict
 }
 
+@test "a program in one file is predicted with the prices of its code" {
+    needs mpich
+    command -v gcc >/dev/null || skip "no gcc"
+    calibrated mpich 1
+    cp "$MIMDSIM_SRCDIR/examples/stencil.c" .
+    works start mpich 1 "$MIMDSIM" run stencil.c --set ranks=1 --set n=128 --backend mpi --samples 5 --limit 2 -q
+    works mimdsim predict stencil.c -m my.yaml --set ranks=1 --set n=128 --json
+    json_is_valid
+    # A sane ratio, on a computer that may be busy with anything; and prices that act.
+    ratio=$(sqlite3 :memory: "SELECT json_extract('$output', '\$[0].predicted_s')
+        / json_extract('$output', '\$[0].measured_s') BETWEEN 0.2 AND 5")
+    [ "$ratio" = 1 ] || { show; return 1; }
+    first=$(sqlite3 :memory: "SELECT json_extract('$output', '\$[0].predicted_s')")
+    works mimdsim predict stencil.c -m my.yaml --set ranks=1 --set n=128 --set machine.node.code.issue='9 cycles' --json
+    [ "$(sqlite3 :memory: "SELECT json_extract('$output', '\$[0].predicted_s') > 3 * $first")" = 1 ]
+    json_is '$[0].explained_by' node.code
+}
+
+@test "calibrate without gcc has one price of an instruction, and says so" {
+    needs mpich
+    mkdir empty
+    for tool in sh bash env cat rm mkdir uname hydra_pmi_proxy mpirun.mpich mpiexec.hydra; do
+        t=$(command -v $tool) && ln -s "$t" empty/$tool
+    done
+    export XDG_CACHE_HOME="$PWD/empty-cache"
+    run --separate-stderr -- env PATH="$PWD/empty" MIMDSIM_CC=no-such-gcc "$(command -v mpirun.mpich)" -n 1 "$MIMDSIM" calibrate --quick -o my.yaml
+    [ "$status" -ne 75 ] || skip "busy"
+    [ "$status" -eq 0 ] || { show; return 1; }
+    stderr_says 'the code of programs in one file is not measured:'
+    grep -q '^  instruction: {value: ' my.yaml
+    ! grep -q '^  code:' my.yaml
+}
+
 own_mpi_program() {
     needs "$1"
     command -v "mpicc.$1" >/dev/null || skip "no mpicc.$1"
@@ -125,6 +165,36 @@ programs_of_their_own() {
 
 @test "record times a program of Open MPI's mpicc" { programs_of_their_own openmpi; }
 @test "record times a program of MPICH's mpicc" { programs_of_their_own mpich; }
+
+@test "record times a Fortran program of MPICH's mpif90" {
+    needs mpich
+    command -v mpif90.mpich >/dev/null || skip "no mpif90.mpich"
+    cat >sum.f90 <<'F'
+program total
+   use mpi
+   implicit none
+   integer :: rank, size, error, all, from
+   call MPI_Init(error)
+   call MPI_Comm_rank(MPI_COMM_WORLD, rank, error)
+   call MPI_Comm_size(MPI_COMM_WORLD, size, error)
+   all = rank
+   call MPI_Allreduce(MPI_IN_PLACE, all, 1, MPI_INTEGER, MPI_SUM, MPI_COMM_WORLD, error)
+   if (all /= size * (size - 1) / 2) call MPI_Abort(MPI_COMM_WORLD, 1, error)
+   call MPI_Sendrecv(rank, 1, MPI_INTEGER, mod(rank + 1, size), 0, from, 1, MPI_INTEGER, mod(rank + size - 1, size), 0, &
+                     MPI_COMM_WORLD, MPI_STATUS_IGNORE, error)
+   if (from /= mod(rank + size - 1, size)) call MPI_Abort(MPI_COMM_WORLD, 2, error)
+   call MPI_Finalize(error)
+end program total
+F
+    # both modules, whose MPI_Init and constants are not the same
+    sed 's/use mpi$/use mpi_f08/' sum.f90 >sum8.f90
+    for program in sum sum8; do
+        mpif90.mpich -o $program $program.f90 || skip "mpif90 does not work"
+        ASAN_OPTIONS=detect_leaks=0 works mimdsim record -n 2 --samples 2 -q -- ./$program
+        stdout_says "$program: P = 2"
+        sql_is mimdsim.db "SELECT P, samples, status, min_s > 0, min_s < 60 FROM real_run WHERE program = '$program'" '2|2|ok|1|1'
+    done
+}
 
 @test "record refuses what it cannot time" {
     fails_with 64 mimdsim record -n 2

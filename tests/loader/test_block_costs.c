@@ -73,6 +73,45 @@ static void each_block_gets_its_cost(void **state)
     assert_int_equal(word_at(&i, 13), 2333);
 }
 
+/* With the finer prices: the longest of what is issued, the chain, and the bytes. */
+static void the_finer_prices_hold_where_there_are_some(void **state)
+{
+    (void)state;
+    static const struct node_cost fine = {.flop = 10000,
+                                          .instruction = 1000,
+                                          .div = 90000,
+                                          .sqrt = 90000,
+                                          .trig = 5000,
+                                          .byte = 2000,
+                                          .issue = 100,
+                                          .code_div = 7000,
+                                          .code_root = 8000,
+                                          .chain = 900,
+                                          .step = 300};
+    const struct {
+        struct block_counts c;
+        int64_t ps;
+    } cases[] = {
+        {{.instruction = 8, .flop = 4, .issue = 5}, 500},
+        {{.issue = 5, .trig = 1}, 5500},
+        {{.issue = 5, .div = 1}, 7000},
+        {{.issue = 5, .div = 1, .sqrt = 2}, 23000},
+        {{.issue = 5, .chain_flop = 2}, 1800},
+        {{.issue = 5, .chain_flop = 1, .chain_cycle = 4}, 2100},
+        {{.issue = 40, .chain_flop = 1, .chain_cycle = 4}, 4000},
+        {{.issue = 5, .bytes = 16}, 16000},
+        {{.issue = 2}, 300}, /* the counter's own step */
+        {{.bytes = 0}, 0},
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        assert_int_equal(block_cost_ps(&fine, &cases[i].c, 1), cases[i].ps);
+    assert_int_equal(block_cost_ps(&fine, &cases[1].c, 2), 11000);
+    /* Without a price of what is issued the others are not looked at. */
+    struct node_cost coarse = fine;
+    coarse.issue = 0;
+    assert_int_equal(block_cost_ps(&coarse, &cases[0].c, 1), 40000);
+}
+
 static void a_table_that_does_not_fit_is_refused(void **state)
 {
     (void)state;
@@ -110,6 +149,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_block_gets_its_cost),
+        cmocka_unit_test(the_finer_prices_hold_where_there_are_some),
         cmocka_unit_test(a_table_that_does_not_fit_is_refused),
         cmocka_unit_test(a_block_that_takes_too_long_is_refused),
     };

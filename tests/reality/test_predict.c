@@ -104,7 +104,16 @@ static void groups_act(void **state)
 {
     (void)state;
     for (int g = 0; g < PRICES; g++) {
-        struct machine_spec m = {.node = {1e9, 0, 1e9, 1, 1, 1, 1, 1e-9, 1e9}}, same;
+        struct machine_spec m = {.node = {.flop_rate = 1e9,
+                                          .clock = 1e9,
+                                          .div_cycles = 1,
+                                          .sqrt_cycles = 1,
+                                          .trig_cycles = 1,
+                                          .instruction_cycles = 1,
+                                          .code = {1, 1, 1, 1, 1},
+                                          .call_time = 1e-9,
+                                          .copy_bandwidth = 1e9}},
+                            same;
         m.network.end_latency = 1e-6;
         m.software.nsegment = 1;
         m.software.segment[0] = (struct software_segment){0, 1, 1, 1, 1, 1, 1, 1, -1, 0, 0, 0};

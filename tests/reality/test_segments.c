@@ -31,9 +31,8 @@ static void eager(void **state)
     for (int64_t b = 0; b <= 512; b += 128) add(&m, b);
     add(&m, 1024);
     add(&m, 4096);
-    assert_int_equal(segments_of(&m, s), 2);
-    assert_int_equal(s[1].segment.from, 1024);
-    for (int i = 0; i < 2; i++) {
+    assert_int_equal(segments_of(&m, s), 1);
+    for (int i = 0; i < 1; i++) {
         near(s[i].segment.send_overhead, 1e-7);
         near(s[i].segment.send_copy, 1e-10);
         near(s[i].segment.recv_overhead, 8e-8);

@@ -1,0 +1,177 @@
+/* code_rates.c - see code_rates.h.
+ *
+ * A block takes the longest of several times (machine/node_cost.h), so the time of a loop is no sum
+ * of prices. But it is one piece by piece: with the prices at hand, each loop is simulated once
+ * more with each price a little higher, which tells how often it counts there. Prices of that
+ * linear piece follow from least squares; where they lead to another piece, it is done again. */
+#include "reality/code_rates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/progress.h"
+#include "reality/fit.h"
+#include "reality/rates.h"
+#include "run/run.h"
+
+enum { ROUNDS = 12 };
+
+/* A price is raised by this part of itself, or of a small price where it is none [cycles]. */
+#define STEP 0.02
+#define SMALL_PRICE 0.05
+
+static const char *const names[CODE_PRICES] = {"issue", "div", "root", "chain", "step"};
+
+const char *code_price_name(int i) { return names[i]; }
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* --- the fit ---------------------------------------------------------------------------------- */
+
+/* What the samples take at `price`: fitted times, residuals, and the sum of their squares. */
+static bool judge(struct code_rates *r, const double *price, code_time_fn *time, void *context,
+                  double *squares, struct err *e)
+{
+    double off[CODE_RATES_MOST];
+    *squares = r->residual = 0;
+    for (int i = 0; i < r->n; i++) {
+        struct code_sample *s = &r->sample[i];
+        if (!time(context, i, price, &s->fitted, e)) return false;
+        off[i] = fabs(s->fitted / s->seconds - 1);
+        *squares += off[i] * off[i];
+        r->residual = fmax(r->residual, off[i]);
+    }
+    qsort(off, (size_t)r->n, sizeof *off, by_value);
+    r->median_residual = off[r->n / 2];
+    memcpy(r->price, price, sizeof r->price);
+    return true;
+}
+
+/* Prices that are right where each counts as often as it does at r->price. Times that no price
+ * explains (divisions) are taken away first. */
+static bool linear_piece(const struct code_rates *r, code_time_fn *time, void *context,
+                         double *price, struct err *e)
+{
+    double count[CODE_RATES_MOST * CODE_PRICES], y[CODE_RATES_MOST], unused;
+    for (int i = 0; i < r->n; i++) {
+        const double now = r->sample[i].fitted;
+        double explained = 0;
+        for (int j = 0; j < CODE_PRICES; j++) {
+            double raised[CODE_PRICES], after;
+            memcpy(raised, r->price, sizeof raised);
+            const double step = STEP * fmax(raised[j], SMALL_PRICE);
+            raised[j] += step;
+            if (!time(context, i, raised, &after, e)) return false;
+            /* Whole picoseconds a block are rounded: less than a thousandth is none. */
+            const double slope = fabs(after - now) < 1e-3 * STEP * now ? 0 : (after - now) / step;
+            count[i * CODE_PRICES + j] = slope;
+            explained += slope * r->price[j];
+        }
+        y[i] = r->sample[i].seconds - (now - explained);
+        if (y[i] <= 0) y[i] = r->sample[i].seconds / 2;
+    }
+    if (!fit_prices(count, y, r->n, CODE_PRICES, price, &unused))
+        return err_set(e, ERR_DATA, "%d loops are too few to fit prices of code to", r->n);
+    /* A price that counts nowhere on this piece stays, since it may count on another one. */
+    for (int j = 0; j < CODE_PRICES; j++) {
+        bool counts = false;
+        for (int i = 0; i < r->n; i++) counts = counts || count[i * CODE_PRICES + j] != 0;
+        if (!counts) price[j] = r->price[j];
+    }
+    return true;
+}
+
+bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, struct err *e)
+{
+    /* A processor of four instructions a cycle, whose additions take three. */
+    double price[CODE_PRICES] = {0.25, 5, 8, 3, 1}, best[CODE_PRICES], least = INFINITY, squares;
+    memcpy(best, price, sizeof best);
+    if (r->n < CODE_PRICES)
+        return err_set(e, ERR_DATA, "%d loops are too few to fit prices of code to", r->n);
+    for (int k = 0; k < ROUNDS; k++) {
+        double next[CODE_PRICES];
+        if (!judge(r, price, time, context, &squares, e)) return false;
+        if (squares < least) {
+            least = squares;
+            memcpy(best, price, sizeof best);
+        }
+        if (!linear_piece(r, time, context, next, e)) return false;
+        /* Half of the way: the piece beyond may have other slopes. */
+        for (int j = 0; j < CODE_PRICES; j++) price[j] = 0.5 * (price[j] + next[j]);
+    }
+    return judge(r, best, time, context, &squares, e);
+}
+
+/* --- measuring -------------------------------------------------------------------------------- */
+
+/* What simulating a sample needs. */
+struct simulated {
+    const struct plan *plan;
+    const struct node_spec *node;
+    double clock;
+    struct run_cache *cache;
+};
+
+static bool simulated_time(void *context, int i, const double *price, double *seconds,
+                           struct err *e)
+{
+    const struct simulated *x = context;
+    struct run_spec spec = x->plan->run[i];
+    struct arena *a = arena_create();
+    struct run_result *r = TAKE(a, 1, struct run_result);
+    spec.machine.node = *x->node;
+    spec.machine.node.clock = x->clock;
+    /* A price of nothing at all would switch the finer rule off, or ask for node.div. */
+    spec.machine.node.code = (struct code_spec){.issue = fmax(price[0], 1e-6),
+                                                .div = fmax(price[1], 1e-6),
+                                                .root = fmax(price[2], 1e-6),
+                                                .chain = price[3],
+                                                .step = price[4]};
+    bool ok = run_sharing(&spec, NULL, x->cache, a, r, e);
+    if (ok && r->status != RUN_OK)
+        ok = err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", r->text);
+    *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
+    arena_destroy(a);
+    return ok;
+}
+
+/* "calibrate-code, loop = sum": settings that the points differ in. */
+static void name_of(const struct run_spec *spec, struct code_sample *s)
+{
+    const char *p = spec->program.parameters;
+    const char *loop = p != NULL ? strstr(p, "loop = ") : NULL;
+    const int n = loop != NULL ? (int)strcspn(loop, "\n") : 0;
+    snprintf(s->what, sizeof s->what, "%.24s, %.*s", spec->kernel.name, n, n > 0 ? loop : "");
+}
+
+bool code_rates_measure(const struct plan *p, const struct node_spec *node, int samples,
+                        double seconds, bool quiet, struct code_rates *out, struct err *e)
+{
+    struct simulated x = {p, node, out->clock, run_cache_create()};
+    struct host_comm *comm = host_comm_create(NULL, e);
+    struct progress progress = progress_make("loops", p->nrun, quiet);
+    bool ok = comm != NULL;
+    out->n = 0;
+    for (int i = 0; ok && i < p->nrun && i < CODE_RATES_MOST; i++) {
+        struct rate_sample one;
+        struct code_sample *s = &out->sample[out->n];
+        ok = rate_sample_take(&p->run[i], comm, samples, seconds, x.cache, &one, e);
+        if (!ok) break;
+        *s = (struct code_sample){
+            .seconds = one.seconds, .samples = one.samples, .disturbed = one.disturbed};
+        name_of(&p->run[i], s);
+        out->n++;
+        progress_show(&progress, i + 1);
+    }
+    progress_end(&progress);
+    ok = ok && code_rates_fit(out, simulated_time, &x, e);
+    run_cache_destroy(x.cache);
+    host_comm_destroy(comm);
+    return ok;
+}

@@ -1,0 +1,47 @@
+/* code_rates.h - what the code of programs in one file costs on one processor of this computer:
+ * prices of instructions, loads, stores and chains, fitted to measured times of loops. */
+#ifndef REALITY_CODE_RATES_H
+#define REALITY_CODE_RATES_H
+
+#include "base/err.h"
+#include "plan/plan.h"
+
+enum { CODE_RATES_MOST = 24, CODE_PRICES = 5 };
+
+/* One loop. */
+struct code_sample {
+    char what[64];
+    double seconds, fitted; /* median of the undisturbed repetitions; by the prices */
+    int samples, disturbed;
+};
+
+/* Prices in cycles of `clock`, in the order of names: node.code.issue, div, root, chain, step. */
+struct code_rates {
+    double clock;              /* [Hz] */
+    double price[CODE_PRICES]; /* [cycles] */
+    double residual, median_residual; /* relative: the largest, the median */
+    int n;
+    struct code_sample sample[CODE_RATES_MOST]; /* (n) */
+};
+
+/* code_price_name: the key of price `i` behind "node.code.". */
+const char *code_price_name(int i);
+
+/* A time that depends on prices: seconds of sample `i` at `price` (CODE_PRICES, cycles). False with
+ * an error when it cannot be told. */
+typedef bool code_time_fn(void *context, int i, const double *price, double *seconds,
+                          struct err *e);
+
+/* code_rates_fit: prices with which the times of `r->n` samples come nearest to those measured, by
+ * repeated linear least squares of relative residuals (Gauss and Newton), none negative. Fills
+ * price, fitted and residuals. Returns false with the error of `time`, or ERR_DATA: too few
+ * samples. */
+bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, struct err *e);
+
+/* code_rates_measure: run the points of plan `p` on one rank in this process and fit prices to
+ * them; what divisions, roots and elementary functions cost is that of `node`. Errors as
+ * rates_measure. */
+bool code_rates_measure(const struct plan *p, const struct node_spec *node, int samples,
+                        double seconds, bool quiet, struct code_rates *out, struct err *e);
+
+#endif
