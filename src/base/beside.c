@@ -18,10 +18,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/check.h"
 #include "base/memory.h"
 #include "base/text.h"
 
-static const char middle[] = ".new-", ending[] = ".part", journal[] = "-journal";
+static const char middle[] = BESIDE_MIDDLE, ending[] = BESIDE_ENDING, journal[] = "-journal";
 enum { DRAWN = 6 };
 
 /* Locked, where the file system has locks, and still there: a cleaner may have come between the
@@ -64,8 +65,7 @@ int beside_open(const char *path, char **name)
     return -1;
 }
 
-/* Whether `name` is what beside_open calls a file beside `own`. */
-static bool is_beside(const char *name, const char *own)
+bool beside_is_draft(const char *name, const char *own)
 {
     size_t n = strlen(own), m = sizeof middle - 1;
     if (strlen(name) != n + m + DRAWN + sizeof ending - 1) return false;
@@ -103,7 +103,7 @@ void beside_clean(const char *path)
     text_add(&folder, "%.*s.", slash == NULL ? 0 : (int)(slash - path) + 1, path);
     DIR *dir = opendir(folder.s);
     for (struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;)
-        if (is_beside(entry->d_name, own)) remove_left(dirfd(dir), entry->d_name);
+        if (beside_is_draft(entry->d_name, own)) remove_left(dirfd(dir), entry->d_name);
     if (dir != NULL) closedir(dir);
     text_free(&folder);
 }
@@ -115,6 +115,8 @@ static char *target_of(const char *path)
 {
     char *real = realpath(path, NULL);
     if (real != NULL) return real;
+    /* Else a link would be replaced by a file for lack of memory. */
+    if (errno == ENOMEM) check_memory(0);
     return memory_text(path);
 }
 
@@ -131,10 +133,13 @@ bool beside_begin(struct beside *b, const char *path, struct err *e)
         /* A file that is replaced leaves its permissions. */
         if (file >= 0 && there) (void)!fchmod(file, info.st_mode & 0777);
         b->out = file >= 0 ? fdopen(file, "w") : NULL;
+        const int why = errno;
         if (file >= 0 && b->out == NULL) close(file), unlink(b->name);
+        errno = why;
     }
     if (b->out != NULL) return true;
-    err_set(e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
+    err_set(e, errno == ENOMEM ? ERR_INTERNAL : ERR_CREATE, "cannot make %s: %s", path,
+            strerror(errno));
     free(b->name);
     free(b->path);
     *b = (struct beside){0};
