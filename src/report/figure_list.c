@@ -2,10 +2,12 @@
  *
  * A figure is a pair of NAME.sql and NAME.gp: adding one is adding two files. */
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/check.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "report/figure_text.h"
@@ -35,6 +37,8 @@ int report_figures(const char *data_dir, char ***name)
     struct dirent **entry = NULL;
     text_add(&plots, "%s/plots", data_dir);
     int nentry = scandir(plots.s, &entry, NULL, alphasort), n = 0;
+    /* A folder that is not there has no figures; one that cannot be listed has some. */
+    if (nentry < 0 && errno == ENOMEM) check_memory(0);
     *name = memory_zeroed((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
     for (int i = 0; i < nentry; i++) {
         /* What begins with _ draws what a verb computed (plot.h): no figure by itself. */
@@ -69,7 +73,8 @@ bool figure_unknown(const char *data_dir, const char *wanted, struct err *e)
 }
 
 /* A name with a slash is none, so that no path leads out of plots/. */
-bool figure_description(const char *data_dir, const char *name, struct text *sql, struct err *e)
+static bool read_description(const char *data_dir, const char *name, struct text *sql,
+                             struct err *e)
 {
     struct text plots = {0}, file = {0}, path = {0};
     text_add(&plots, "%s/plots", data_dir);
@@ -81,5 +86,21 @@ bool figure_description(const char *data_dir, const char *name, struct text *sql
     text_free(&plots);
     text_free(&file);
     text_free(&path);
+    return ok;
+}
+
+/* Whose statements another one has: what stands before the line is its own. */
+bool figure_description(const char *data_dir, const char *name, struct text *sql, struct err *e)
+{
+    char like[64];
+    struct text own = {0};
+    bool ok = read_description(data_dir, name, &own, e);
+    const bool shares = ok && figure_line(own.s ? own.s : "", "-- like: ", like, sizeof like);
+    if (ok) text_add(sql, "%s", own.s ? own.s : "");
+    text_free(&own);
+    if (!shares) return ok;
+    ok = read_description(data_dir, like, &own, e);
+    if (ok) text_add(sql, "%s", own.s ? own.s : "");
+    text_free(&own);
     return ok;
 }

@@ -19,7 +19,8 @@ const char *figure_line(const char *sql, const char *mark, char *word, size_t si
  * in a fingerprint of what it was. */
 char *figure_file_name(const char *figure, const char *s);
 
-/* figure_description: append the text of data_dir/plots/NAME.sql to *sql. Returns false when there
+/* figure_description: append the text of data_dir/plots/NAME.sql to *sql, and where that has a line
+ * "-- like: OTHER" the text of OTHER.sql. Returns false when there
  * is no such figure. */
 bool figure_description(const char *data_dir, const char *name, struct text *sql, struct err *e);
 

@@ -27,20 +27,27 @@ static const char *program(void)
     return named && *named ? named : "gnuplot";
 }
 
-/* Start it in folder `dir` with its complaints going into `complaints`. Returns 0 or an errno. */
-static int start(const char *dir, const char *file, int complaints, pid_t *child)
+/* What the child does before it becomes gnuplot: 0, or an errno where there is no memory for it. */
+static int prepare(posix_spawn_file_actions_t *actions, const char *work, int complaints)
+{
+    /* No terminal: gnuplot must neither ask nor write to ours. */
+    int code = posix_spawn_file_actions_addopen(actions, 0, "/dev/null", O_RDONLY, 0);
+    if (code == 0) code = posix_spawn_file_actions_addopen(actions, 1, "/dev/null", O_WRONLY, 0);
+    if (code == 0) code = posix_spawn_file_actions_adddup2(actions, complaints, 2);
+    /* In its folder, as scripts name their files without a path. */
+    return code ? code : posix_spawn_file_actions_addchdir_np(actions, work);
+}
+
+/* Start it in folder `work` with its complaints going into `complaints`. Returns 0 or an errno. */
+static int start(const char *work, const char *file, int complaints, pid_t *child)
 {
     /* -d: no startup files of the user, which could change every figure. */
     char *const arguments[] = {(char *)program(), "-d", (char *)file, NULL};
     posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    /* No terminal: gnuplot must neither ask nor write to ours. */
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, complaints, 2);
-    /* In its folder, as scripts name their files without a path. */
-    posix_spawn_file_actions_addchdir_np(&actions, dir);
-    int code = posix_spawnp(child, program(), &actions, NULL, arguments, environ);
+    int code = posix_spawn_file_actions_init(&actions);
+    if (code != 0) return code;
+    code = prepare(&actions, work, complaints);
+    if (code == 0) code = posix_spawnp(child, program(), &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     return code;
 }
@@ -93,19 +100,20 @@ static const char *reason(struct text *complaints)
     return chosen ? chosen : "no reason given";
 }
 
-bool gnuplot_run(const char *dir, const char *file, struct err *e)
+bool gnuplot_run(const char *work, const char *dir, const char *file, struct err *e)
 {
     int ends[2], status = 0;
     pid_t child;
     /* O_CLOEXEC: worker processes must not keep the pipe open. */
     if (pipe2(ends, O_CLOEXEC) != 0)
         return err_set(e, ERR_INTERNAL, "no pipe for gnuplot: %s", strerror(errno));
-    int code = start(dir, file, ends[1], &child);
+    int code = start(work, file, ends[1], &child);
     /* Our copy must be closed: the pipe ends when the child's copy does. */
     close(ends[1]);
     /* No gnuplot: the user can still draw, since script and data are complete. */
     if (code != 0) {
         close(ends[0]);
+        if (code == ENOMEM) return err_set(e, ERR_INTERNAL, "no memory to start %s", program());
         return err_set(e, ERR_UNAVAILABLE,
                        "%s: %s; the data and the script are in %s: install gnuplot (Debian: "
                        "gnuplot-nox) and run it there on %s", program(), strerror(code), dir, file);

@@ -48,13 +48,13 @@ static bool has_end(FILE *in, const struct format *f)
     return n >= (size_t)f->length && memcmp(tail + n - f->length, f->end, (size_t)f->length) == 0;
 }
 
-bool images_check(const char *dir, const char *name, struct err *e)
+bool images_check(const char *work, const char *dir, const char *name, struct err *e)
 {
     int there = 0;
     bool whole = true;
     for (int i = 0; i < FORMATS && whole; i++) {
         struct text path = {0};
-        path_of(&path, dir, name, &formats[i]);
+        path_of(&path, work, name, &formats[i]);
         FILE *in = access(path.s, F_OK) == 0 ? text_open_file(path.s, e) : NULL;
         whole = e->kind == ERR_NONE;
         if (in != NULL) {
@@ -62,7 +62,9 @@ bool images_check(const char *dir, const char *name, struct err *e)
             whole = has_end(in, &formats[i]);
             fclose(in);
         }
-        if (!whole) err_set(e, ERR_IO, "%s was not drawn to its end: is the disk full?", path.s);
+        if (!whole)
+            err_set(e, ERR_IO, "%s/%s.%s was not drawn to its end: is the disk full?", dir, name,
+                    formats[i].ending);
         text_free(&path);
     }
     /* A script may draw one format alone; none is no drawing. */

@@ -333,6 +333,9 @@ static bool put_about(const struct plot *p, struct store *s, struct err *e)
     make_subtitle(p, &subtitle);
     text_add(&bands, "%s", "");
     say_bands(q, &bands);
+    /* Bars stand at words, also where these are numbers. */
+    const bool axis =
+        strcmp(p->figure, "_bars") != 0 && p->sheet.column[p->axes.x].number;
     const struct store_value v[] = {
         store_text(title.s),        store_text(subtitle.s),
         store_text(bands.s),        store_text(p->x.label),
@@ -341,7 +344,7 @@ static bool put_about(const struct plot *p, struct store *s, struct err *e)
         store_int(p->x.base),       store_int(p->value.base),
         store_int(q->npanel),       store_int(q->nseries),
         store_int(q->nx),           store_int(q->ny),
-        store_int(q->band),         store_int(p->sheet.column[p->axes.x].number),
+        store_int(q->band),         store_int(axis),
         store_int((int64_t)longest)};
     bool ok = store_temporary(s, "plot_about",
                               "title TEXT, subtitle TEXT, bands TEXT, xlabel TEXT, ylabel TEXT,"

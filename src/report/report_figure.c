@@ -3,11 +3,12 @@
  *
  * NAME.sql holds one statement, or several of which each after the first follows a line "-- table:
  * x"; the first gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command
- * fills the database for it, a line
- * "-- each: QUERY" that there is a drawing for each row of QUERY: ?1 is its first column, the files
- * are called after its second. The script that is run is made of the figure's name, style.gp and
- * NAME.gp, and stays beside the images: gnuplot NAME.gp redraws them from the CSV without this
- * program.
+ * fills the database for it. What stands between a line "-- shared:" and a line "-- main:" is the
+ * beginning of each of several statements; a line "-- like: OTHER" stands for those of OTHER.sql.
+ * A line "-- each: QUERY" says that there is a drawing for each row of QUERY: ?1 is its first
+ * column, the files are called after its second. The script that is run is made of the figure's
+ * name, style.gp and NAME.gp, and stays beside the images: gnuplot NAME.gp redraws them from the
+ * CSV without this program.
  *
  * A database may come from a stranger. Its texts go into data files alone, NAME.csv and
  * NAME.provenance, never into a script; of a name that one gives to a drawing, what has a meaning
@@ -21,6 +22,7 @@
 #include "base/arena.h"
 #include "base/beside.h"
 #include "base/check.h"
+#include "base/draft_folder.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "report/csv.h"
@@ -39,6 +41,7 @@ struct figure {
     const char *as;      /* the results' name */
     const char *run;     /* what ?1 is: the run or row to show; NULL: the description chooses */
     const char *dir;     /* folder of the results */
+    struct draft_folder draft; /* in it: where they are made */
     struct text run_ids; /* JSON array of the runs shown, for its provenance */
     int64_t nrow;        /* of the first table */
     bool folder_made;    /* `dir` was not there */
@@ -60,8 +63,7 @@ static void remember_run(void *context, int64_t id)
     text_add(ids, "%s%lld", ids->length == 0 ? "[" : ",", (long long)id);
 }
 
-/* One table of the figure into its file. It is made in memory first: a main table without rows
- * leaves what an earlier drawing wrote. */
+/* One table of the figure into its file, unless the main one has no rows. */
 static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow,
                         struct err *e)
 {
@@ -72,34 +74,49 @@ static bool write_table(struct figure *f, const char *sql, const char *table, in
                         &f->run_ids, nrow, e);
     if (!ok) err_in(e, f->name);
     text_stream_end(out);
-    text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
+    text_add(&path, "%s/%s%s%s.csv", f->draft.path, f->as, *table ? "." : "", table);
     if (ok && (*table || *nrow > 0)) ok = beside_write(path.s, data.s, data.length, e);
     text_free(&path);
     text_free(&data);
     return ok;
 }
 
+/* What all statements of `sql` begin with, into *shared; returns where the first of them goes
+ * on. */
+static const char *take_shared(const char *sql, struct text *shared)
+{
+    char rest[8];
+    const char *from = figure_line(sql, "-- shared:", rest, sizeof rest),
+               *main = from != NULL ? figure_line(from, "-- main:", rest, sizeof rest) : NULL;
+    text_add(shared, "%s", "");
+    if (main == NULL) return sql;
+    text_add_bytes(shared, from, (size_t)(main - from));
+    return main;
+}
+
 /* All tables of NAME.sql. */
 static bool write_tables(struct figure *f, const char *sql, struct err *e)
 {
     char table[64] = "", next[64];
-    for (const char *from = sql; from != NULL;) {
+    struct text shared = {0};
+    bool ok = true;
+    for (const char *from = take_shared(sql, &shared); ok && from != NULL;) {
         const char *after = figure_line(from, "-- table: ", next, sizeof next);
         struct text statement = {0};
         int64_t nrow;
-        text_add(&statement, "%s", from);
+        text_add(&statement, "%s%s", shared.s, from);
         /* Each statement ends where the next table's mark begins. */
         if (after != NULL) *strstr(statement.s, "-- table: ") = '\0';
-        bool ok = write_table(f, statement.s, table, &nrow, e);
+        ok = write_table(f, statement.s, table, &nrow, e);
         text_free(&statement);
-        if (!ok) return false;
-        if (*table == '\0') f->nrow = nrow;
+        if (ok && *table == '\0') f->nrow = nrow;
         /* Without rows in the main table nothing is drawn, so the others are not needed. */
-        if (f->nrow == 0) return true;
+        if (f->nrow == 0) break;
         text_copy(table, sizeof table, next);
         from = after;
     }
-    return true;
+    text_free(&shared);
+    return ok;
 }
 
 /* Appends plots/NAME.gp. */
@@ -125,7 +142,7 @@ static bool write_provenance(struct figure *f, struct err *e)
     /* A database's texts must not break the line. */
     csv_plain(source.s);
     text_add(&source, "\n");
-    text_add(&path, "%s/%s.provenance", f->dir, f->as);
+    text_add(&path, "%s/%s.provenance", f->draft.path, f->as);
     ok = ok && beside_write(path.s, source.s, source.length, e);
     text_free(&source);
     text_free(&path);
@@ -141,7 +158,7 @@ static bool write_script(struct figure *f, struct err *e)
     for (const char *c = f->as; *c; c++) text_add(&script, *c == '\'' ? "''" : "%c", *c);
     text_add(&script, "'\n");
     bool ok = add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
-    text_add(&path, "%s/%s.gp", f->dir, f->as);
+    text_add(&path, "%s/%s.gp", f->draft.path, f->as);
     ok = ok && beside_write(path.s, script.s, script.length, e);
     text_free(&script);
     text_free(&path);
@@ -166,8 +183,7 @@ bool report_folder(const char *dir, struct err *e)
     return ok;
 }
 
-/* Nothing to draw. A folder that was made for it is removed again; what a drawing of another
- * database left there stays. */
+/* Nothing to draw. A folder that was made for it is removed again. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
@@ -182,37 +198,59 @@ static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 static bool clean_svg(const struct figure *f, struct err *e)
 {
     struct text path = {0}, svg = {0}, clean = {0};
-    text_add(&path, "%s/%s.svg", f->dir, f->as);
+    text_add(&path, "%s/%s.svg", f->draft.path, f->as);
     /* A script may draw a PNG alone. */
-    if (access(path.s, F_OK) != 0) {
-        text_free(&path);
-        return true;
+    bool ok = true;
+    if (access(path.s, F_OK) == 0) {
+        FILE *out = text_stream(&clean);
+        ok = text_read_file(&svg, path.s, e) && svg_clean(&svg, NULL, out, e);
+        text_stream_end(out);
+        if (!ok) err_in(e, f->as);
+        ok = ok && beside_write(path.s, clean.s, clean.length, e);
     }
-    FILE *out = text_stream(&clean);
-    bool ok = text_read_file(&svg, path.s, e) && svg_clean(&svg, NULL, out, e);
-    text_stream_end(out);
-    if (!ok) err_in(e, path.s);
-    ok = ok && beside_write(path.s, clean.s, clean.length, e);
     text_free(&clean);
     text_free(&path);
     text_free(&svg);
     return ok;
 }
 
-/* Tables, then the script, then gnuplot. If that fails, no image is left: data and script stay,
- * to be drawn elsewhere. */
+static bool is_picture(const char *name)
+{
+    const size_t n = strlen(name);
+    return n > 4 && (strcmp(name + n - 4, ".png") == 0 || strcmp(name + n - 4, ".svg") == 0);
+}
+
+static bool is_no_picture(const char *name) { return !is_picture(name); }
+
+/* Tables, then the script, then gnuplot, all in the folder of drafts. Pictures of an earlier
+ * drawing go before its data do: none is to be seen beside other numbers. If gnuplot fails, data
+ * and script get their places all the same, to be drawn elsewhere. */
 static bool draw(struct figure *f, const char *sql, struct err *e)
 {
     struct text script = {0};
-    bool ok = write_tables(f, sql, e);
-    if (ok && f->nrow == 0) return no_rows(f, sql, e);
-    images_remove(f->dir, f->as);
+    if (!write_tables(f, sql, e)) return false;
+    /* What a drawing of another database left stays. */
+    if (f->nrow == 0) return true;
+    bool ok = write_provenance(f, e) && write_script(f, e);
     text_add(&script, "%s.gp", f->as);
-    ok = ok && write_provenance(f, e) && write_script(f, e) && gnuplot_run(f->dir, script.s, e) &&
-         images_check(f->dir, f->as, e) && clean_svg(f, e);
-    if (!ok) images_remove(f->dir, f->as);
+    const bool drawn = ok && gnuplot_run(f->draft.path, f->dir, script.s, e) &&
+                       images_check(f->draft.path, f->dir, f->as, e) && clean_svg(f, e);
     text_free(&script);
-    return ok;
+    images_remove(f->dir, f->as);
+    /* A second error is not told: the first cause wins. */
+    ok = ok && draft_folder_publish(&f->draft, is_no_picture, e);
+    return ok && drawn && draft_folder_publish(&f->draft, is_picture, e);
+}
+
+/* The folder of drafts around it. A folder of results that was made for nothing goes again. */
+static bool draw_apart(struct figure *f, const char *sql, struct err *e)
+{
+    struct text path = {0};
+    text_add(&path, "%s/%s", f->dir, f->as);
+    bool ok = draft_folder_begin(&f->draft, path.s, e) && draw(f, sql, e);
+    draft_folder_end(&f->draft);
+    text_free(&path);
+    return ok && (f->nrow > 0 || no_rows(f, sql, e));
 }
 
 /* One drawing: `run` is what ?1 is bound to, `as` the name of its files. */
@@ -224,7 +262,7 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
     char *plots = joined(data_dir, "/plots", "");
     struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
     f.folder_made = access(dir, F_OK) != 0;
-    bool ok = report_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
+    bool ok = report_folder(dir, e) && draw_apart(&f, sql.s ? sql.s : "", e);
     text_free(&f.run_ids);
     text_free(&sql);
     free(plots);

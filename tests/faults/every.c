@@ -261,7 +261,7 @@ static bool is_one_of(int status, const char *statuses)
 }
 
 /* What a failed command may leave: files as they were before it, or as they are after it; of a
- * process that ended at once also one that never got its name. */
+ * process that ended at once also some that never got their names. */
 static const char *judge_files(const struct outcome *before)
 {
     static char why[512];
@@ -274,7 +274,7 @@ static const char *judge_files(const struct outcome *before)
         /* A report tells which figures could not be drawn, and leaves out what cannot be read, with
          * a word. */
         if (now.err[0] && (ends_in(name, ".md") || ends_in(name, ".html"))) continue;
-        if (ends_in(name, ".db") || (now.status == 71 && ends_in(name, ".part")))
+        if (ends_in(name, ".db") || (now.status == 71 && strstr(name, ".part")))
             continue; /* looked at; removed later */
         snprintf(why, sizeof why, "%s is neither the old nor the new one", name);
         return why;
