@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "app/interrupt.h"
 #include "app/load_curve.h"
 #include "base/memory.h"
 #include "base/progress.h"
+#include "run/interrupt.h"
 
 enum { MOST_THREADS = 64, SEARCH_WEIGHT = 8 }; /* a search is about so many points */
 

@@ -206,6 +206,25 @@ void crash_guard_end(void)
     munmap(g, GUARD_BYTES);
 }
 
+/* Found as the handler finds it: there is no global variable. */
+struct crash_record *crash_record_of_process(void)
+{
+    const struct guard *g = guard_of_process();
+    return g ? g->record : NULL;
+}
+
+/* What a handler of somebody else has found out, who knows more than this one could. The kind is
+ * stored last: the parent reads what is there by then. */
+void crash_told(struct crash_record *record, const char *text)
+{
+    size_t n = strlen(text);
+    if (n >= sizeof record->told) n = sizeof record->told - 1;
+    memcpy(record->told, text, n);
+    record->told[n] = '\0';
+    atomic_store(&record->kind, CRASH_TOLD);
+    _exit(CRASH_STATUS);
+}
+
 /* Between runs nobody is watched: a fault is the simulator's own then. */
 void crash_watch(const struct loader_template *t, int64_t stack_bytes)
 {

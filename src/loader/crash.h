@@ -15,9 +15,9 @@
 #include "base/err.h"
 #include "loader/loader.h"
 
-enum { CRASH_FRAMES = 8, CRASH_PATH = 512, CRASH_STATUS = 72 };
+enum { CRASH_FRAMES = 8, CRASH_PATH = 512, CRASH_TOLD_BYTES = 400, CRASH_STATUS = 72 };
 
-enum crash_kind { CRASH_NONE, CRASH_SIGNAL, CRASH_STACK, CRASH_HOST_TIME };
+enum crash_kind { CRASH_NONE, CRASH_SIGNAL, CRASH_STACK, CRASH_HOST_TIME, CRASH_TOLD };
 
 /* What the handler leaves; plain data in shared memory. */
 struct crash_record {
@@ -27,6 +27,7 @@ struct crash_record {
     uint64_t address; /* the memory accessed, for SIGSEGV and SIGBUS */
     int64_t now_ps;   /* the rank's clock, -1: not known */
     int64_t stack_bytes; /* that each rank has */
+    char told[CRASH_TOLD_BYTES]; /* CRASH_TOLD: the whole sentence */
     double seconds;   /* the limit of host time that was passed [s] */
     int nframe;       /* places, innermost first: those within the program's files */
     struct {
@@ -46,6 +47,12 @@ void crash_record_destroy(struct crash_record *r);
  * crash_guard_end: as it was before. */
 bool crash_guard_begin(struct crash_record *record, struct err *e);
 void crash_guard_end(void);
+
+/* crash_record_of_process: the record of crash_guard_begin, NULL: this process has none.
+ * crash_told: `text` is what is to be said of the end of this process, which is now; may be called
+ * in a signal handler. */
+struct crash_record *crash_record_of_process(void);
+_Noreturn void crash_told(struct crash_record *record, const char *text);
 
 /* crash_watch: whose ranks run now, NULL: none; they are found by their stacks of `stack_bytes`
  * each. Without a guard: no effect. */

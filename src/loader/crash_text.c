@@ -89,7 +89,9 @@ static void place_of(const struct crash_record *r, char *buffer, size_t size)
 bool crash_text(const struct crash_record *r, char *buffer, int size)
 {
     char what[256], where[512] = "", when[64] = "";
-    if (atomic_load(&r->kind) == CRASH_NONE) return false;
+    const int kind = atomic_load(&r->kind);
+    if (kind == CRASH_NONE) return false;
+    if (kind == CRASH_TOLD) return snprintf(buffer, (size_t)size, "%s", r->told), true;
     describe(r, what, sizeof what);
     place_of(r, where, sizeof where);
     if (r->now_ps >= 0)

@@ -164,7 +164,6 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
      * people may be in an endless loop. */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != c->parent) _exit(0); /* it went before that was set */
-    interrupts_silent();
     struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
     struct run_cache *cache = run_cache_create();
     struct err unguarded; /* a crash is then told by its signal alone */
@@ -517,10 +516,10 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
     if (!quiet) c.heartbeat = heartbeats_make();
     if (c.heartbeat && workers <= 1 && !apart)
         c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
-    struct interrupts before;
-    interrupts_begin(&before);
+    struct interrupt ctrl_c; /* whoever counts what is stored has begun one that knows more */
+    interrupt_begin(&ctrl_c, NULL, c.ntodo);
     bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);
-    interrupts_end(&before);
+    interrupt_end(&ctrl_c);
     progress_end(&c.progress);
     if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
     return ok;

@@ -1,46 +1,91 @@
-/* interrupt.c - what a campaign says when somebody ends it by Ctrl-C or SIGTERM.
+/* interrupt.c - see interrupt.h.
  *
- * Each run is stored in a transaction of its own, so nothing has to be put in order: only people
- * want to know that. The handler calls what POSIX allows in handlers, and the signal then does
- * what it does without it. */
+ * A thread may print, a signal handler may not; and a handler would need a global variable. What
+ * was committed is whole whenever the process ends (store.c). The thread is ended by a signal of
+ * its own: to cancel it would load the library that unwinds stacks, which takes as long as a small
+ * run. */
 #include "run/interrupt.h"
 
-#include <unistd.h>
+#include <errno.h>
+#include <stdio.h>
 
-static void say(int number)
+/* What interrupt_end sends to the thread alone. */
+enum { ENOUGH = SIGUSR2 };
+
+/* The signals of a terminal and of kill, but for those that are ignored: blocked ones reach
+ * whoever waits for them, ignored or not. */
+static void fill(sigset_t *set)
 {
-    static const char text[] =
-        "\nmimdsim: interrupted: what is stored stays, and the same command goes on from there\n";
-    (void)!write(STDERR_FILENO, text, sizeof text - 1);
-    /* It is blocked until this returns, and the handler is gone by then (SA_RESETHAND). */
+    static const int wanted[] = {SIGINT, SIGTERM};
+    sigemptyset(set);
+    for (int i = 0; i < 2; i++) {
+        struct sigaction now;
+        if (sigaction(wanted[i], NULL, &now) == 0 && now.sa_handler != SIG_IGN)
+            sigaddset(set, wanted[i]);
+    }
+}
+
+static void say(struct interrupt *x)
+{
+    static const char goes_on[] =
+        "\nmimdsim: interrupted: what is stored stays, and the same command goes on from there";
+    if (x->database == NULL) fprintf(stderr, "%s\n", goes_on);
+    else
+        fprintf(stderr, "%s (%d of %d runs were made, into %s)\n", goes_on, atomic_load(&x->stored),
+                x->todo, x->database);
+}
+
+/* Waits, says, and lets the signal do what it does by itself: shells look at how a process ended.
+ */
+static void *wait_for_signal(void *context)
+{
+    struct interrupt *x = context;
+    sigset_t set = x->wanted;
+    int number = 0;
+    sigaddset(&set, ENOUGH);
+    sem_post(&x->waits);
+    /* A signal of the user that waits, too, has a lower number and is the first one. */
+    if (sigwait(&set, &number) != 0 || number == ENOUGH) return NULL;
+    say(x);
+    signal(number, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &x->wanted, NULL);
     raise(number);
+    return NULL;
 }
 
-static void hear(int number, struct sigaction *before)
+/* Blocked in this thread and all that it makes, processes included: a worker that died of the same
+ * Ctrl-C would be stored as a failed run. */
+void interrupt_begin(struct interrupt *x, const char *database, int todo)
 {
-    struct sigaction action = {.sa_handler = say, .sa_flags = (int)SA_RESETHAND};
-    sigaction(number, NULL, before);
-    if (before->sa_handler == SIG_DFL) sigaction(number, &action, NULL);
+    sigset_t set;
+    *x = (struct interrupt){.database = database, .todo = todo};
+    fill(&x->wanted);
+    /* Blocked by then: somebody waits for it already. */
+    pthread_sigmask(SIG_SETMASK, NULL, &x->before);
+    const bool waited = sigismember(&x->before, SIGINT) || sigismember(&x->before, SIGTERM);
+    if (todo == 0 || waited) return;
+    set = x->wanted;
+    sigaddset(&set, ENOUGH);
+    if (pthread_sigmask(SIG_BLOCK, &set, &x->before) != 0) return;
+    sem_init(&x->waits, 0, 0);
+    x->on = pthread_create(&x->thread, NULL, wait_for_signal, x) == 0;
+    /* A thread takes memory when it begins. Were a worker forked meanwhile, the lock of an
+     * allocator that does not mind forks, as the address sanitizer's, would be held in it for ever.
+     */
+    while (x->on && sem_wait(&x->waits) != 0 && errno == EINTR) continue;
+    /* The thread has begun with all three blocked; here the last one acts as before. */
+    set = x->before;
+    for (int number = SIGINT; x->on && number <= SIGTERM; number++)
+        if (sigismember(&x->wanted, number)) sigaddset(&set, number);
+    pthread_sigmask(SIG_SETMASK, &set, NULL);
 }
 
-void interrupts_begin(struct interrupts *before)
+void interrupt_end(struct interrupt *x)
 {
-    hear(SIGINT, &before->interrupt);
-    hear(SIGTERM, &before->terminate);
-}
-
-void interrupts_end(const struct interrupts *before)
-{
-    sigaction(SIGINT, &before->interrupt, NULL);
-    sigaction(SIGTERM, &before->terminate, NULL);
-}
-
-/* Ctrl-C reaches all processes of the terminal. */
-void interrupts_silent(void)
-{
-    struct interrupts mine;
-    sigaction(SIGINT, NULL, &mine.interrupt);
-    sigaction(SIGTERM, NULL, &mine.terminate);
-    if (mine.interrupt.sa_handler == say) signal(SIGINT, SIG_DFL);
-    if (mine.terminate.sa_handler == say) signal(SIGTERM, SIG_DFL);
+    if (!x->on) return;
+    pthread_kill(x->thread, ENOUGH);
+    pthread_join(x->thread, NULL);
+    sem_destroy(&x->waits);
+    pthread_sigmask(SIG_SETMASK, &x->before, NULL);
+    x->on = false;
 }

@@ -1,21 +1,34 @@
-/* interrupt.h - what a campaign says when somebody ends it by Ctrl-C or SIGTERM. */
+/* interrupt.h - Ctrl-C during a campaign: what is stored, and how to go on. */
 #ifndef RUN_INTERRUPT_H
 #define RUN_INTERRUPT_H
 
+#include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
 
-/* What interrupts_begin has replaced. */
-struct interrupts {
-    struct sigaction interrupt, terminate;
+/* A thread that waits for SIGINT and SIGTERM while the process works; workers that are forked
+ * meanwhile leave these signals to it. */
+struct interrupt {
+    const char *database; /* NULL: not known here */
+    int todo;             /* runs that are to be made */
+    atomic_int stored;    /* those of them that are stored */
+    bool on;
+    pthread_t thread;
+    sem_t waits;     /* posted by the thread, which takes no memory from then on */
+    sigset_t wanted; /* signals that it waits for */
+    sigset_t before; /* signals that were blocked */
 };
 
-/* interrupts_begin: from now on SIGINT and SIGTERM end the process as ever, but with a sentence on
- * stderr: what is stored stays. Signals that are ignored, as under nohup, stay so. interrupts_end:
- * as it was before. */
-void interrupts_begin(struct interrupts *before);
-void interrupts_end(const struct interrupts *before);
+/* interrupt_begin: from now on such a signal ends the process with a line on stderr, after which
+ * the process ends by that signal as it would have. Signals that are ignored, as in the background
+ * of a script, stay so. Where there is no thread to be had, the process ends without the line.
+ * Nothing happens where nothing is to be done, and where one has begun already: whoever began
+ * first knows most. */
+void interrupt_begin(struct interrupt *x, const char *database, int todo);
 
-/* interrupts_silent: in a worker, whose parent says it. */
-void interrupts_silent(void);
+/* interrupt_end: signals act as before. */
+void interrupt_end(struct interrupt *x);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "run/rank_stack.h"
 #include "vp/world.h"
 
 /* Fewer ranks on each thread than this, and messages between threads cost more than a thread saves
@@ -54,6 +55,7 @@ static struct world_load load_of(const struct program_run *r, int64_t largest)
                                .output = r->output,
                                .noutput = PROGRAM_OUTPUTS,
                                .heartbeat = r->heartbeat,
+                               .name = r->type->name,
                                .stack_bytes = r->rank->stack_bytes,
                                .timed = r->rank->timed,
                                .foreign = r->rank->foreign,
@@ -102,6 +104,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     struct world_load load = load_of(r, largest);
     load.scratch = world;
     load.working_set = working_set(r);
+    if (!load.foreign && !rank_stack_set(&load, e)) return false;
     const char *alone = world_alone(m, &load, record);
     load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
     out->threads = load.threads;

@@ -299,6 +299,14 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed)
     return (int64_t)(deepest * p->page);
 }
 
+/* Stacks with their pages lie side by side, so a division finds the one. */
+int fiber_below(const struct fiber_pool *p, const void *address)
+{
+    const uintptr_t from = (uintptr_t)p->base, at = (uintptr_t)address;
+    if (at < from || at - from >= p->stride * (size_t)p->n) return -1;
+    return (at - from) % p->stride < p->page ? (int)((at - from) / p->stride) : -1;
+}
+
 int64_t fiber_pool_switches(const struct fiber_pool *p)
 {
     int64_t n = 0;

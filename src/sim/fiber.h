@@ -41,6 +41,10 @@ void fiber_leave(struct fiber *f);
  * no guard; -1: none. */
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed);
 
+/* fiber_below: the fiber below whose stack `address` is, in its guard or spare page; -1: none. May
+ * be called in a signal handler. */
+int fiber_below(const struct fiber_pool *p, const void *address);
+
 /* fiber_pool_switches: number of fiber_enter calls so far. */
 int64_t fiber_pool_switches(const struct fiber_pool *p);
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "measure/run_heartbeat.h"
+#include "sim/stack_fault.h"
 #include "spec/topology_list.h"
 #include "vp/team_parts.h"
 
@@ -136,11 +137,13 @@ static void *work(void *argument)
     struct team *t = k->team;
     const struct run_heartbeat *p = t->world->load->heartbeat;
     check_note_set(t->note.describe, t->note.context);
+    struct stack_fault *fault = k->number > 0 ? stack_fault_join(t->world->fault) : NULL;
     if (k->number == 0 && t->post) work_and_post(k);
     for (struct share *s; (s = team_next_share(k)) != NULL;) {
         run_share(k, s);
         if (k->number == 0 && p && p->beat) p->beat(p->context);
     }
+    stack_fault_end(fault);
     return NULL;
 }
 

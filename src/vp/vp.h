@@ -73,6 +73,7 @@ struct world {
     struct topology *topology;
     struct placement placement;
     struct fiber_pool *fibers;
+    struct stack_fault *fault; /* tells whose stack was not enough; NULL: nobody does */
     struct vp *vp; /* (nrank) */
     int nrank, nstage, nfinished;
     struct software_cost software;

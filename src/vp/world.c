@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "machine/node_use.h"
 #include "measure/run_heartbeat.h"
+#include "sim/stack_fault.h"
 #include "vp/explain.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
@@ -111,11 +112,25 @@ static int64_t stack_bytes(const struct world *w)
 /* What to do depends on whose program it is. */
 void world_stack_text(const struct world *w, int rank, char *text, size_t size)
 {
+    char named[64] = "";
+    if (w->load->name && !w->load->foreign)
+        snprintf(named, sizeof named, "kernel %.40s, ", w->load->name);
     snprintf(text, size,
-             "rank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s", rank,
-             w->nrank, (long long)stack_bytes(w) / 1024,
+             "%srank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s",
+             named, rank, w->nrank, (long long)stack_bytes(w) / 1024,
              w->load->foreign ? ".stack_bytes in the program's declaration gives every rank more"
-                              : "fewer bodies for each rank, thus more ranks, need less");
+                              : "the environment variable MIMDSIM_STACK (such as '256 KiB') gives "
+                                "every rank more, and with fewer bodies for each rank, thus more "
+                                "ranks, less is needed");
+}
+
+/* In a signal handler: the rank's stack is at its end, nothing is known of the rest. */
+static void tell_overflow(void *context, int rank)
+{
+    const struct world *w = context;
+    char text[400];
+    world_stack_text(w, rank, text, sizeof text);
+    w->load->overflowed(w->load->overflow_context, text);
 }
 
 /* The digest covers events, what ranks received and when, and when they ended. */
@@ -283,6 +298,9 @@ static void run(struct world *w, uint64_t seed)
     w->vp = TAKE(w->scratch, w->nrank, struct vp);
     w->ready = TAKE(w->scratch, w->nrank, struct vp *);
     world_make_tables(w);
+    /* Programs of users are watched by whoever loads them. */
+    if (w->load->overflowed && !w->load->foreign)
+        w->fault = stack_fault_begin(w->fibers, tell_overflow, w);
     if ((w->load->threads > 1 || w->load->hosts) && !world_alone(w->machine, w->load, w->record)) {
         team_run(w, seed);
     } else {
@@ -290,6 +308,7 @@ static void run(struct world *w, uint64_t seed)
         background_start(w, seed);
         world_loop(w);
     }
+    stack_fault_end(w->fault);
     r->host_s = host_seconds() - begin;
     if (w->load->hosts) {
         end_shared(w);

@@ -30,7 +30,12 @@ struct world_load {
     const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
     int noutput;
     struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */
+    const char *name;              /* of the program, for messages; NULL: none */
     int64_t stack_bytes;           /* of each rank, 0: what built-in programs need */
+    /* of programs that are not foreign: called in a signal handler when a rank has gone beyond its
+     * stack, with a sentence; ends the process. NULL: the fault ends it */
+    void (*overflowed)(void *context, const char *text);
+    void *overflow_context;
     /* the program may use wildcards, tests, cancel, probes and synchronous sends (comm_match.h) */
     bool timed;
     /* none of its sends is synchronous: as largest_message, a promise that saves events */

@@ -1,0 +1,91 @@
+# figures.bats - the figures whose rows no made run has, drawn from runs that the program really makes, and what must be
+# seen in them. The other figures are drawn by tests/report/test_figure.c, which names those that it leaves to this file.
+load helper
+
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || return 1
+    cat >small.yaml <<'END'
+schema_version: 1
+title: Small mesh
+topology: {family: mesh, dims: [4, 4]}
+node: {flop_rate: 1 Gflop/s, clock: 1 GHz, div: 1 cycles, sqrt: 1 cycles, trig: 1 cycles}
+network:
+  level: packet
+  link: {bandwidth: 16 GB/s}
+  hop_latency: 3 ns
+  end_latency: 2 ns
+  credit_latency: 2 ns
+  flit: 16 B
+  packet: 256 B
+  buffer: 16
+software: {gap: 1 us}
+END
+    {
+        "$MIMDSIM" why speedup-t3e --set n=16 --set level=link -o real.db --quiet
+        "$MIMDSIM" load small.yaml --rates 0.05,0.2,0.4 --traffic uniform -o real.db --quiet
+        "$MIMDSIM" run speedup-t3e --set n=8 --set level=loggp --uncertainty 8 -o real.db --quiet
+        "$MIMDSIM" run bisection --set ranks=16 --set level=link -o real.db --quiet
+        "$MIMDSIM" run pingpong-machines --set machine=t3e-300,paragon -o real.db --quiet
+        "$MIMDSIM" run "$MIMDSIM_SRCDIR/examples/ring-allreduce.yaml" -o real.db --quiet --set ranks=2,4
+    } >setup.out 2>&1 || { cat setup.out; return 1; }
+}
+
+# drawn FIGURE: every picture of it is there, whole, and in both formats; their names without endings in $pictures.
+drawn() {
+    works mimdsim plot "$BATS_FILE_TMPDIR/real.db" "$1"
+    pictures=${output//.png/}
+    for picture in $pictures; do
+        tail -c 12 "$picture.png" | grep -aq IEND
+        tail -c 8 "$picture.svg" | grep -q '</svg>'
+        [ "$(grep -c '<path' "$picture.svg")" -gt 5 ]
+    done
+}
+
+# shown TEXT...: the picture's SVG has these texts.
+shown() {
+    for text; do grep -qF -- "$text" "$picture.svg" || { echo "not in $picture.svg: $text"; return 1; }; done
+}
+
+@test "roofline: a point for each stage that sends, with its rate, under its roofs" {
+    drawn roofline
+    db=$BATS_FILE_TMPDIR/real.db
+    n=$(sql "$db" "SELECT count(*) FROM roofline WHERE sent_bytes > 0 AND ordinal > 0")
+    [ "$n" -ge 3 ]
+    [ "$(tail -n +2 "$picture.csv" | wc -l)" -eq "$n" ]
+    while read -r stage; do shown "$stage"; done < <(sql "$db" "SELECT stage FROM roofline WHERE sent_bytes > 0 AND ordinal > 0")
+    shown 'Computing against communication of dynamics on t3e-300: n = 16; P = 16; level link' 'port and computing' \
+        'message software' 'Mflop/s' 'flop/B'
+    # no stage is above its roof
+    sql_is "$db" 'SELECT count(*) FROM roofline WHERE attained > 1.000001 * min(ifnull(computing, 1e300), ifnull(bandwidth, 1e300), ifnull(software, 1e300))' 0
+}
+
+@test "slack: a point for each rank, critical or not, and the parts of the time" {
+    drawn slack
+    db=$BATS_FILE_TMPDIR/real.db
+    [ "$(grep -c '^1,' "$picture.csv")" -eq 16 ]
+    shown 'Slack of dynamics on t3e-300: n = 16; P = 16; level link' 'slack [µs]' 'rank' 'critical' 'nearly' 'has more slack'
+    # shares of a bar are the whole of it
+    awk -F, '$1 == 2 && ($4 + $5 + $6 < 99.999 || $4 + $5 + $6 > 100.001) { bad = 1 } END { exit bad }' "$picture.csv"
+    while read -r part; do shown "${part//&/&amp;}"; done < <(sql "$db" "SELECT stage || ': ' || cause FROM slack ORDER BY time_ps DESC LIMIT 3")
+}
+
+@test "load: latency over the load that was offered, with the saturation that was found" {
+    drawn load
+    db=$BATS_FILE_TMPDIR/real.db
+    shown uniform
+    [ "$(tail -n +2 "$picture.csv" | wc -l)" -eq "$(sql "$db" 'SELECT count(*) FROM load_point')" ]
+    sql_is "$db" 'SELECT count(*) >= 3 FROM load_point' 1
+}
+
+@test "why, uncertainty, linkmap, pingpong and speedup" {
+    for figure in why uncertainty linkmap pingpong speedup; do drawn $figure; done
+}
+
+@test "every figure that made rows cannot draw is drawn here, or in the tests of the claims' answers" {
+    list=$(sed -n '/of_other_rows\[\] = {/,/};/p' "$MIMDSIM_SRCDIR/tests/report/test_figure.c" | grep -o '"[a-z]*"' | tr -d '"')
+    [ "$(wc -w <<<"$list")" -ge 9 ]
+    for figure in $list; do
+        [ "$figure" = explain ] || grep -qE "(drawn|for figure in).*\b$figure\b" "$BATS_TEST_DIRNAME/figures.bats" ||
+            { echo "nobody draws $figure"; return 1; }
+    done
+}
