@@ -23,6 +23,7 @@
     X(PATH_RECV, "receive overhead", "o_r and copies of the receiver's software")                  \
     X(PATH_GAP, "gap", "g: the injection port between two messages of one node")                   \
     X(PATH_HOP, "hop latency", "routers and wires, per resource of the route")                     \
+    X(PATH_CABLE, "cables", "what long links take beyond the hop latency, topology.dim_latency")   \
     X(PATH_END, "end latency", "network interfaces, entry and exit together: L without the hops")  \
     X(PATH_INJECTION_BYTES, "injection bandwidth", "bytes at the rate of the injection port, G")   \
     X(PATH_LINK_BYTES, "link bandwidth", "bytes at the rate of a link")                            \

@@ -152,7 +152,7 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
     if (n->wire && !net_is_injection(n, f->resource)) {
         const sim_ps wire = n->wire[f->resource - n->nnode];
         there += wire;
-        if (n->path) f->path = net_path_way(n, f->path, wire, f->resource);
+        if (n->path) f->path = net_path_cable(n, f->path, wire, f->resource);
     }
     if (n->routing ? rule_next(n, f, x, &h) : topology_next(n->topology, &f->cursor, &h)) {
         f->resource = net_resource(n, h.link);

@@ -56,7 +56,7 @@ static void loggp_inject(struct net *n, struct net_message *m)
     if (n->path) {
         const uint32_t sent =
             net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
-        m->path = net_path_tail(n, net_path_way(n, sent, way, -1), slow, m->bytes);
+        m->path = net_path_tail(n, net_path_way(n, sent, m, way), slow, m->bytes);
     }
     net_account(n, net_injection(n, m->src), m, 1, m->bytes, busy, m->injected - m->ready);
     net_arrive(n, m);

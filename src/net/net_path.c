@@ -89,12 +89,17 @@ uint32_t net_path_hops(const struct net *n, uint32_t before, int hops, int resou
     return add(n, before, hops * n->tau, PATH_HOP, resource, hops);
 }
 
-/* Hop latencies are what a faster router changes; what is left over is cable. */
-uint32_t net_path_way(const struct net *n, uint32_t before, sim_ps way, int resource)
+uint32_t net_path_cable(const struct net *n, uint32_t before, sim_ps wire, int resource)
 {
-    const int hops = n->tau > 0 ? (int)(way / n->tau) : 0;
-    if (!n->wire) return net_path_hops(n, before, hops, resource);
-    return add(n, before, way, PATH_HOP, resource, 0);
+    return add(n, before, wire, PATH_CABLE, resource, 1);
+}
+
+/* Hop latencies are what a faster router changes; what is left over is cable. */
+uint32_t net_path_way(const struct net *n, uint32_t before, const struct net_message *m, sim_ps way)
+{
+    const sim_ps cables = n->wire ? net_cables(n, m) : 0;
+    const int hops = n->tau > 0 ? (int)((way - cables) / n->tau) : 0;
+    return net_path_cable(n, net_path_hops(n, before, hops, -1), cables, -1);
 }
 
 uint32_t net_path_tail(const struct net *n, uint32_t before, struct net_rate slow, int64_t bytes)
@@ -111,7 +116,7 @@ void net_path_whole(const struct net *n, struct net_message *m)
 {
     struct net_rate slow;
     const sim_ps way = net_way(n, m, &slow);
-    uint32_t node = net_path_tail(n, net_path_way(n, m->path, way, -1), slow, m->bytes);
+    uint32_t node = net_path_tail(n, net_path_way(n, m->path, m, way), slow, m->bytes);
     if (path_time(n->path, node) > m->arrival)
         node = m->path; /* the sender's own messages overlap */
     m->path = path_add(n->path, node, m->arrival, PATH_CONTENTION, -1, -1, -1, 0);

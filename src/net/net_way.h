@@ -9,6 +9,9 @@
  * network; *slow becomes the slowest rate of that way. */
 sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow);
 
+/* net_cables: the part of it that long links add to the hop latency. */
+sim_ps net_cables(const struct net *n, const struct net_message *m);
+
 /* net_route_begin: m's first packet at its source, for levels that follow a rule. */
 struct route net_route_begin(const struct net *n, const struct net_message *m);
 

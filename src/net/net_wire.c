@@ -110,6 +110,16 @@ sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate
     return ps_later((nhop + 1) * n->tau, cables);
 }
 
+/* Walked anew: only who records a path asks. */
+sim_ps net_cables(const struct net *n, const struct net_message *m)
+{
+    sim_ps cables = 0;
+    int link;
+    struct route p = net_route_begin(n, m);
+    while (n->wire && routing_empty(n->routing, &p, &link)) cables += n->wire[link];
+    return cables;
+}
+
 int net_head_port(const struct net *n, int resource)
 {
     int from, to, port;

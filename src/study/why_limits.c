@@ -11,6 +11,7 @@
 static void no_latency(struct machine_spec *m)
 {
     m->network.hop_latency = m->network.end_latency = m->network.routing_latency = 0;
+    memset(m->topology.dim_latency, 0, sizeof m->topology.dim_latency);
     m->network.vc_allocation_latency = m->network.credit_latency = 0;
     m->software.rendezvous_latency = m->software.shared_latency = 0;
     for (int i = 0; i < m->software.nsegment; i++)
@@ -58,7 +59,7 @@ static const struct ideal {
     const char *name, *what;
     void (*change)(struct machine_spec *m);
 } ideals[] = {
-    {"zero latency", "hop, end, segment and rendezvous latencies are 0", no_latency},
+    {"zero latency", "hop, end, cable, segment and rendezvous latencies are 0", no_latency},
     {"zero overhead", "o_s, o_r, copies and gap g are 0", no_overhead},
     {"infinite bandwidth", "links, ports and G take no time a byte", no_bytes},
     {"infinitely fast nodes", "no operation takes time", no_computing},

@@ -41,6 +41,7 @@ enum parameter {
     KERNEL_TIME,
     KERNEL_BYTE,
     HOP,
+    CABLE,
     END,
     SEGMENT_LATENCY,
     LINK,
@@ -94,6 +95,7 @@ static const struct row {
     [KERNEL_TIME] = {"machine.software.kernel.time", AT(software.kernel_time), NONE, false},
     [KERNEL_BYTE] = {"machine.software.kernel.per_byte", AT(software.kernel_per_byte), NONE, false},
     [HOP] = {"machine.network.hop_latency", AT(network.hop_latency), NONE, false},
+    [CABLE] = {"machine.topology.dim_latency", NONE, NONE, false}, /* of all dimensions */
     [END] = {"machine.network.end_latency", AT(network.end_latency), NONE, false},
     [SEGMENT_LATENCY] = {"machine.software.segments latency", NONE, SEGMENT(latency), false},
     [LINK] = {"machine.network.link.bandwidth", AT(network.link_bandwidth), NONE, true},
@@ -121,6 +123,7 @@ static void scale(struct machine_spec *m, enum parameter p, double factor)
     const struct row *r = &table[p];
     double *x = number(m, r);
     if (x) *x = r->rate ? *x / factor : *x * factor;
+    for (int d = 0; p == CABLE && d < MACHINE_MAX_DIMS; d++) m->topology.dim_latency[d] *= factor;
     if (r->segment < 0) return;
     for (int i = 0; i < m->software.nsegment; i++) {
         double *y = (double *)(void *)((char *)&m->software.segment[i] + r->segment);
@@ -215,6 +218,8 @@ static enum parameter only(const struct machine_spec *m, enum path_cause cause)
         return GAP;
     case PATH_HOP:
         return HOP;
+    case PATH_CABLE:
+        return CABLE;
     case PATH_END:
         return END;
     case PATH_LINK_BYTES:
