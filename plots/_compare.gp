@@ -1,7 +1,7 @@
 # _compare.gp - sets of runs side by side: times against what varies, and below where the time goes, a bar for each run.
 data = figure.".csv"; about = figure.".about.csv"
-xlabel = ""
-stats about using (headline = strcol("title"), sides = int(column("sides")), shown = int(column("shown")), \
+xlabel = ""; errors = ""
+stats about using (headline = strcol("title"), errors = strcol("errors"), sides = int(column("sides")), shown = int(column("shown")), \
     points = int(column("points")), lines = int(column("lines")), xlabel = strcol("xlabel"), xlog = int(column("xlog")), 0) nooutput
 array name[sides]; longest = 0; longest_point = 0
 stats data using (name[int(column("side"))] = strcol("name"), \
@@ -14,6 +14,7 @@ unit = most >= 1 ? "s" : (most >= 1e-3 ? "ms" : "µs")
 # runs of very different length: each bar is then a share of its own time
 shares = most > 30*least
 headline = "Comparison of ".headline
+provenance = errors eq "" ? provenance : errors."; ".provenance
 subline = shown < points ? sprintf("%d of the %d points that all have", shown, points) : (points == 1 ? "" : sprintf("%d points that all have", points))
 wide = 900.0
 bar_high = 17.0; group_high = bar_high*sides + 24

@@ -4,5 +4,5 @@
 SELECT place, replace(point, ',', '‚') AS point, x, side, replace(name, ',', '‚') AS name, makespan_s, half_s, compute_s,
        overhead_s, wait_s, contention_s, ratio, bar FROM temp.compare_point ORDER BY side, x, place;
 -- table: about
-SELECT replace(title, ',', '‚') AS title, sides, shown, points, lines, replace(xlabel, ',', '‚') AS xlabel, xlog
+SELECT replace(title, ',', '‚') AS title, replace(errors, ',', '‚') AS errors, sides, shown, points, lines, replace(xlabel, ',', '‚') AS xlabel, xlog
 FROM temp.compare_about;

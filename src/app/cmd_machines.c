@@ -88,11 +88,16 @@ static const struct origin *value_of(const struct shown *m, const char *key)
     return NULL;
 }
 
+/* A number as the file states it, and the least and largest that it gives for it. */
+struct bounds {
+    double low, value, high;
+};
+
 /* How far the rate of small dense code is known, and with it the LINPACK benchmark of order 100:
  * at the least, the stated and the largest rate of the file [flop/s]. A published LINPACK result
  * is the one number of many old machines, so it is compared here. */
 struct sustained {
-    double rate[3], linpack[3]; /* at the least, stated, largest rate [flop/s] */
+    struct bounds linpack_100, small_dense;
 };
 
 /* LINPACK's operations are counted once and priced three times. */
@@ -100,14 +105,18 @@ static struct sustained sustained_rate(const struct shown *m)
 {
     const struct origin *o = value_of(m, "node.flop_rate");
     /* Without a published range the three rates are one. */
-    bool ranged = o->max > o->min;
-    struct sustained s = {.rate = {ranged ? o->min : m->spec.node.flop_rate, m->spec.node.flop_rate,
-                                   ranged ? o->max : m->spec.node.flop_rate}};
+    const bool ranged = o->max > o->min;
+    const double stated = m->spec.node.flop_rate;
+    struct sustained s = {
+        .small_dense = {ranged ? o->min : stated, stated, ranged ? o->max : stated}};
+    /* The same three prices for the benchmark. */
+    const double rate[] = {s.small_dense.low, stated, s.small_dense.high};
+    double *const linpack[] = {&s.linpack_100.low, &s.linpack_100.value, &s.linpack_100.high};
     struct rate_count count = rate_linpack(100);
     for (int i = 0; i < 3; i++) {
         struct node_spec node = m->spec.node;
-        node.flop_rate = s.rate[i];
-        s.linpack[i] = rate_of(&node, &count);
+        node.flop_rate = rate[i];
+        *linpack[i] = rate_of(&node, &count);
     }
     return s;
 }
@@ -115,39 +124,85 @@ static struct sustained sustained_rate(const struct shown *m)
 /* One line on top of a machine: the parameter that decides most predictions. */
 static void print_sustained(const struct shown *m)
 {
-    struct sustained s = sustained_rate(m);
+    const struct sustained s = sustained_rate(m);
     const struct origin *published = value_of(m, "published.linpack_100");
-    bool bounded = s.rate[0] < s.rate[2];
-    printf("sustained rate of small dense code: %.4g Mflop/s, ", s.rate[1] / 1e6);
+    /* Without bounds the one number stands alone. */
+    const bool bounded = s.small_dense.low < s.small_dense.high;
+    printf("sustained rate of small dense code: %.4g Mflop/s, ", s.small_dense.value / 1e6);
     if (bounded)
-        printf("known within %.4g to %.4g; ", s.rate[0] / 1e6, s.rate[2] / 1e6);
+        printf("known within %.4g to %.4g; ", s.small_dense.low / 1e6, s.small_dense.high / 1e6);
     else
         printf("no bounds given; ");
-    printf("LINPACK 100 with it: %.4g", s.linpack[1] / 1e6);
-    if (bounded) printf(", %.4g to %.4g", s.linpack[0] / 1e6, s.linpack[2] / 1e6);
+    printf("LINPACK 100 with it: %.4g", s.linpack_100.value / 1e6);
+    if (bounded) printf(", %.4g to %.4g", s.linpack_100.low / 1e6, s.linpack_100.high / 1e6);
     if (published) printf(", published %s", published->value);
     putchar('\n');
 }
 
-/* low, value and high; `sorted` has the keys in the order of the alphabet. */
-static void json_sustained(struct json *j, const struct shown *m)
+/* ---- one machine as a document: tables of columns within tables ---- */
+
+/* A value of struct bounds at its place; keys stand in the order of the alphabet. */
+#define RANGE(member) COLUMN_REAL, .offset = offsetof(struct bounds, member)
+
+static const struct column range_column[] = {
+    {"high", RANGE(high), .doc = "with the largest rate of the file [flop/s]"},
+    {"low", RANGE(low), .doc = "with the least"},
+    {"value", RANGE(value), .doc = "as the file states it"},
+};
+static const struct column_table range_columns = COLUMNS(range_column);
+
+/* A row within a row. */
+static void put_range(const struct column *c, const void *row, struct json *j)
 {
-    static const char *const name[] = {"low", "value", "high"};
-    static const int sorted[] = {2, 0, 1};
-    struct sustained s = sustained_rate(m);
-    json_key(j, "sustained_rate");
-    json_object(j);
-    /* Two objects of three rates each. */
-    for (int list = 0; list < 2; list++) {
-        json_key(j, list ? "small_dense" : "linpack_100");
-        json_object(j);
-        for (int i = 0; i < 3; i++) {
-            json_key_real(j, name[sorted[i]], list ? s.rate[sorted[i]] : s.linpack[sorted[i]]);
-        }
-        json_end(j);
-    }
-    json_end(j);
+    columns_json(&range_columns, (const char *)row + c->offset, j);
 }
+
+/* Two rows of three rates each. */
+#define SUSTAINED(member) .json = put_range, .offset = offsetof(struct sustained, member)
+
+static const struct column sustained_column[] = {
+    {"linpack_100", COLUMN_REAL, SUSTAINED(linpack_100), .doc = "LINPACK of order 100"},
+    {"small_dense", COLUMN_REAL, SUSTAINED(small_dense), .doc = "small dense code"},
+};
+static const struct column_table sustained_columns = COLUMNS(sustained_column);
+
+/* Counted, not stored: the topology says it. */
+static void read_processors(const struct column *c, const void *row, struct column_value *v)
+{
+    const struct shown *m = row;
+    (void)c;
+    v->kind = VALUE_INT;
+    v->integer = machine_spec_processors(&m->spec);
+}
+
+/* Computed when it is asked for: three prices of one benchmark. */
+static void put_sustained(const struct column *c, const void *row, struct json *j)
+{
+    const struct sustained s = sustained_rate(row);
+    (void)c;
+    columns_json(&sustained_columns, &s, j);
+}
+
+/* The list that the terminal shows, too. */
+static void put_values(const struct column *c, const void *row, struct json *j)
+{
+    const struct shown *m = row;
+    (void)c;
+    columns_json_list(&origin_columns, m->origin, m->n, sizeof *m->origin, j);
+}
+
+/* What a document says of a machine: its name and size, the rate that decides most predictions,
+ * then every value. */
+#define SHOWN(member) .offset = offsetof(struct shown, spec.member)
+
+static const struct column machine_column[] = {
+    {"name", COLUMN_CHARS, SHOWN(name), .doc = "of its file"},
+    {"processors", COLUMN_INT64, .value = read_processors, .doc = "that programs can use"},
+    {"sustained_rate", COLUMN_REAL, .json = put_sustained, .doc = "how far it is known"},
+    {"title", COLUMN_CHARS, SHOWN(title), .doc = "for people"},
+    {"values", COLUMN_STRING, .json = put_values, .doc = "every value with its origin"},
+};
+static const struct column_table machine_columns = COLUMNS(machine_column);
 
 /* A machine for people, or as one document. */
 static void show_one(const struct common *c, const struct shown *m, struct arena *a)
@@ -161,16 +216,9 @@ static void show_one(const struct common *c, const struct shown *m, struct arena
         for (int i = 0; i < m->n; i++) print_origin(&m->origin[i], a);
         return;
     }
+    /* For programs: the same, from the tables above. */
     struct json j = json_make(stdout);
-    json_object(&j);
-    json_key_text(&j, "name", m->spec.name);
-    json_key_int(&j, "processors", machine_spec_processors(&m->spec));
-    /* keys in the order of the alphabet */
-    json_sustained(&j, m);
-    json_key_text(&j, "title", m->spec.title);
-    json_key(&j, "values");
-    columns_json_list(&origin_columns, m->origin, m->n, sizeof *m->origin, &j);
-    json_end(&j);
+    columns_json(&machine_columns, m, &j);
     json_finish(&j);
 }
 

@@ -5,6 +5,7 @@
 #include "app/verb.h"
 #include "base/json.h"
 #include "store/merge.h"
+#include "store/swept.h"
 
 static const char doc[] =
     "Put the runs of the databases IN... into OUT, which is made where there is none.\n\n"
@@ -54,6 +55,10 @@ int cmd_merge(int argc, char **argv)
         ok = store_merge(s, c.arg[i], &m, &e);
         if (ok) tell(&c, &j, c.arg[i], &m);
     }
+    /* Other settings differ now than in any of them; also of those before one that was refused. */
+    struct err ignored;
+    err_clear(&ignored);
+    if (s != NULL && !store_swept_view(s, ok ? &e : &ignored)) ok = false;
     /* Those that were merged before a failure are in the document. */
     if (s != NULL && c.json) json_end(&j), json_finish(&j);
     store_close(s);

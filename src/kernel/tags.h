@@ -7,7 +7,6 @@ enum {
     TAG_JOINT = 0 * TAG_STEP,     /* coordinates of edge joints */
     TAG_COMPOSITE = 1 * TAG_STEP, /* block composites to the left (outgoing form) */
     TAG_VELOCITY = 2 * TAG_STEP,
-    TAG_TRANSFORM = 3 * TAG_STEP, /* composites of the outgoing form */
     TAG_ACCELERATION = 4 * TAG_STEP,
     TAG_FORCE = 5 * TAG_STEP,
     TAG_SHIFT = 6 * TAG_STEP,       /* + phase: end of block to the next one */
@@ -16,7 +15,6 @@ enum {
     TAG_INTERFACE = 9 * TAG_STEP,   /* local Schur complements */
     TAG_BACK = 10 * TAG_STEP,       /* interface solutions to the right */
     TAG_REDUCE = 11 * TAG_STEP,     /* cyclic reduction, parallel cyclic reduction */
-    TAG_SUBSTITUTE = 12 * TAG_STEP, /* cyclic reduction, way back */
     TAG_GATHER = 13 * TAG_STEP,
     TAG_TREE = 14 * TAG_STEP,    /* tree contraction */
     TAG_LOOP = 15 * TAG_STEP,    /* loop closure */

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "report/how_sure.h"
 #include "report/report.h"
 #include "store/temporary.h"
 
@@ -90,10 +91,9 @@ static bool read_settings(struct reading *r, struct err *e)
                           " WHERE run_id IN (SELECT value FROM json_each(?1))",
                           1, ids, take_count, s, e) ||
             !store_select(s->store,
-                          "SELECT s.key, count(DISTINCT s.id), min(s.value) FROM run_setting x "
-                          "JOIN setting s ON s.id = x.setting_id WHERE x.run_id IN (SELECT run_id "
-                          "FROM v_run WHERE run_id IN (SELECT value FROM json_each(?1))) GROUP BY "
-                          "s.key ORDER BY s.key",
+                          "SELECT key, count(DISTINCT value), min(value) FROM v_setting WHERE "
+                          "run_id IN (SELECT run_id FROM v_run WHERE run_id IN (SELECT value FROM "
+                          "json_each(?1))) GROUP BY key ORDER BY key",
                           1, ids, take_key, r, e))
             return false;
         if (s->nrun == 0)
@@ -366,31 +366,47 @@ static bool put_points(const struct compare *c, struct store *s, struct err *e)
     return ok;
 }
 
+/* How far the times of all sides are known, for the foot: a side may be another database, so the
+ * figure's own stamp cannot tell. */
+static bool known_errors(const struct compare *c, struct text *out, struct err *e)
+{
+    struct how_sure all = {0}, one;
+    for (int i = 0; i < c->nside; i++) {
+        if (!how_sure_read(c->side[i].store, c->side[i].run_ids, &one, e)) return false;
+        how_sure_join(&all, &one);
+    }
+    how_sure_short(&all, out);
+    text_add(out, "%s", ""); /* a text, also without runs */
+    return true;
+}
+
 /* The tables are temporary ones of the first side's connection, wherever the other sides came
  * from. */
 bool compare_draw(const struct compare *c, const char *data_dir, const char *dir, const char *as,
                   struct err *e)
 {
     struct store *s = c->side[0].store;
-    struct text title = {0};
+    struct text title = {0}, errors = {0};
     const int most = MOST_BARS / c->nside;
     for (int i = 0; i < c->nside; i++)
         text_add(&title, "%s%s", i > 0 ? " and " : "", c->side[i].name);
     /* Two points make no curve, and points that differ in words have no axis. */
     const bool lines = c->x_only && c->ncommon > 2;
     /* What the script has to know stands in one row, as for mimdsim plot. */
+    bool ok = known_errors(c, &errors, e);
     const struct store_value about[] = {
-        store_text(title.s), store_int(c->nside), store_int(c->ncommon < most ? c->ncommon : most),
+        store_text(title.s), store_text(errors.s), store_int(c->nside),
+        store_int(c->ncommon < most ? c->ncommon : most),
         store_int(c->ncommon), store_int(lines), store_text(c->x_name),
         store_int(lines && c->point[0].x > 0 && c->point[c->ncommon - 1].x >= 16 * c->point[0].x)};
-    bool ok =
-        put_points(c, s, e) &&
+    ok = ok && put_points(c, s, e) &&
         store_temporary(s, "compare_about",
-                        "title TEXT, sides INTEGER, shown INTEGER, points INTEGER, lines INTEGER, "
-                        "xlabel TEXT, xlog INTEGER",
+                        "title TEXT, errors TEXT, sides INTEGER, shown INTEGER, points "
+                        "INTEGER, lines INTEGER, xlabel TEXT, xlog INTEGER",
                         e) &&
         store_temporary_row(s, "compare_about", (int)(sizeof about / sizeof *about), about, e) &&
         report_figure_run(s, data_dir, "_compare", 0, as, dir, e);
     text_free(&title);
+    text_free(&errors);
     return ok;
 }

@@ -76,6 +76,32 @@ void how_sure_sentence(const struct how_sure *h, struct text *out)
     text_add(out, ".");
 }
 
+/* The least that holds of both. */
+static double least(double a, int na, double b, int nb)
+{
+    if (na == 0 || nb == 0) return na == 0 ? b : a;
+    return a < b ? a : b;
+}
+
+static double most(double a, int na, double b, int nb)
+{
+    if (na == 0 || nb == 0) return na == 0 ? b : a;
+    return a > b ? a : b;
+}
+
+void how_sure_join(struct how_sure *h, const struct how_sure *more)
+{
+    h->level_error = most(h->level_error, h->level, more->level_error, more->level);
+    h->machine_low = least(h->machine_low, h->machine, more->machine_low, more->machine);
+    h->machine_high = most(h->machine_high, h->machine, more->machine_high, more->machine);
+    h->arithmetic_error =
+        most(h->arithmetic_error, h->arithmetic, more->arithmetic_error, more->arithmetic);
+    h->runs += more->runs;
+    h->level += more->level;
+    h->machine += more->machine;
+    h->arithmetic += more->arithmetic;
+}
+
 /* One error of the line below a figure. */
 static void add_short(struct text *t, const char *what, const char *value, int known, int all)
 {

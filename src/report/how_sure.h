@@ -17,6 +17,9 @@ struct how_sure {
  * program that did not know errors yet knows none. Returns false as store_select. */
 bool how_sure_read(struct store *s, const char *run_ids, struct how_sure *out, struct err *e);
 
+/* how_sure_join: `h` becomes what is known of its runs and of `more`, which are others. */
+void how_sure_join(struct how_sure *h, const struct how_sure *more);
+
 /* how_sure_sentence: "How sure: the network level is within 1.2 % (12 of 40 runs); ...", with the
  * command that finds out what is not known; appended. Nothing for no runs. */
 void how_sure_sentence(const struct how_sure *h, struct text *out);

@@ -11,6 +11,8 @@
 #include "measure/real_row.h"
 #include "measure/run_row.h"
 #include "measure/study_row.h"
+#include "spec/field.h"
+#include "spec/spec_fields.h"
 #include "store/rank_times.h"
 #include "store/schema.h"
 
@@ -123,6 +125,22 @@ static void add_rank_view(const char *part, size_t length, struct text *sql)
                      t->column[i].name);
 }
 
+/* A row for each setting whose 0 has a word of its own (field.h). */
+static void add_unlimited(struct text *sql)
+{
+    int n;
+    const struct field_table *const *table = field_tables(&n);
+    const char *before = "SELECT";
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < table[i]->nfield; k++) {
+            const struct field *f = &table[i]->field[k];
+            if (f->zero == NULL) continue;
+            text_add(sql, "%s '%s.%s' AS key", before, table[i]->prefix, f->key);
+            before = "\nUNION ALL SELECT";
+        }
+    text_add(sql, ";\n");
+}
+
 /* schema.sql has a line "@table@" where the columns of that table belong. */
 void rows_schema(struct text *sql)
 {
@@ -134,7 +152,8 @@ void rows_schema(struct text *sql)
         text_add_bytes(sql, rest, (size_t)(at - rest));
         static const char view[] = "rank_stage.";
         const size_t prefix = sizeof view - 1;
-        if (strncmp(at + 1, view, prefix) == 0)
+        if (strncmp(at + 1, "unlimited@", 10) == 0) add_unlimited(sql);
+        else if (strncmp(at + 1, view, prefix) == 0)
             add_rank_view(at + 1 + prefix, (size_t)(end - at - 1) - prefix, sql);
         else add_columns(at + 1, (size_t)(end - at - 1), sql);
         rest = end + 2;

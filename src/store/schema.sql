@@ -439,10 +439,19 @@ FROM run r JOIN v_label l ON l.run_id = r.id
      LEFT JOIN v_indicator i ON i.run_id = r.id
 WHERE r.status = 'ok';
 
--- The settings of every run.
+-- Settings whose 0 means that there is no limit.
+--   key: full name of the setting
+CREATE VIEW v_unlimited AS
+@unlimited@
+
+-- The settings of every run. What has no limit has the value 'unlimited', and no number.
 --   run_id: the run
+--   value: as text, with its unit
+--   number: the same in SI base units; NULL: a word, a list, or no limit
 CREATE VIEW v_setting AS
-SELECT rs.run_id, s.key, s.value, s.number, s.unit FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
+SELECT rs.run_id, s.key, iif(s.number = 0 AND s.key IN (SELECT key FROM v_unlimited), 'unlimited', s.value) AS value,
+       iif(s.number = 0 AND s.key IN (SELECT key FROM v_unlimited), NULL, s.number) AS number, s.unit
+FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
 
 -- The settings that differ between the runs of a scenario: what it sweeps.
 --   run_id: the run
@@ -451,7 +460,8 @@ WITH varied AS (
     SELECT r.scenario, s.key
     FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
     GROUP BY r.scenario, s.key HAVING count(DISTINCT s.id) > 1)
-SELECT rs.run_id, r.scenario, s.key, s.value, s.number, s.unit
+SELECT rs.run_id, r.scenario, s.key, iif(s.number = 0 AND s.key IN (SELECT key FROM v_unlimited), 'unlimited', s.value) AS value,
+       iif(s.number = 0 AND s.key IN (SELECT key FROM v_unlimited), NULL, s.number) AS number, s.unit
 FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
      JOIN varied v ON v.scenario = r.scenario AND v.key = s.key;
 

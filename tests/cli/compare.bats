@@ -35,6 +35,32 @@ load helper
     stdout_says 'B takes 1 times as long as A'
 }
 
+@test "the foot of the figure says how far the times of all sides are known, also of two databases" {
+    for db in one two; do
+        works mimdsim run speedup-t3e --set n=8,16 --set level=loggp -o $db.db --quiet
+    done
+    works mimdsim compare one.db two.db --quiet
+    grep -q 'error of level' figures/compare-*.svg
+    # what only one of them knows is told with the number of its runs
+    works mimdsim run speedup-t3e --set n=8,16 --set level=loggp --uncertainty 4 -o two.db --quiet
+    works mimdsim compare one.db two.db --quiet
+    tr '\n' ' ' <"$(ls -t figures/compare-*.svg | head -1)" | grep -q 'machine [-+][0-9]*[.][.][-+][0-9]* % (2 of 4 runs)'
+}
+
+@test "a rate without a limit is called unlimited, never 0" {
+    printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network: {link: {bandwidth: unlimited}}' 'title: no limit' >free.yaml
+    works mimdsim compare t3e-300 free.yaml --set n=8,16 --set level=loggp -o c.db --quiet
+    stdout_says 'machine.network.link.bandwidth       480 MB/s                       unlimited'
+    [[ $output != *' 0 B/s'* ]] || { show; return 1; }
+    works mimdsim compare t3e-300 free.yaml --set n=8,16 --set level=loggp -o c.db --json
+    json_is '$.differences[#-1].values[1]' unlimited
+    sql_is c.db "SELECT count(*) FROM v_setting WHERE key = 'machine.network.link.bandwidth' AND value = 'unlimited' AND number IS NULL" 2
+    sql_is c.db "SELECT count(*) FROM v_itervar WHERE key = 'machine.network.link.bandwidth' AND value = 'unlimited'" 2
+    # every setting whose 0 has a word of its own is one of these
+    sql_is c.db "SELECT group_concat(key) FROM (SELECT key FROM v_unlimited ORDER BY key)" \
+        machine.network.link.bandwidth,machine.node.copy.bandwidth
+}
+
 @test "repeated runs have ratios with an interval" {
     for db in a b; do
         [ $db = a ] && cv='10 %' || cv='20 %'

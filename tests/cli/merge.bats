@@ -43,6 +43,24 @@ scenario() {
     [ "$(sqlite3 two.db .dump | sha256sum)" = "$before" ]
 }
 
+@test "settings that differ between the databases are columns of v_swept after the merge" {
+    for us in 1 2; do
+        works mimdsim run speedup-t3e --set n=8 --set level=loggp --set machine.network.hop_latency="$us us" -o $us.db --quiet
+        sql_is $us.db "SELECT count(*) FROM sqlite_schema WHERE name = 'v_swept'" 0
+    done
+    works mimdsim merge all.db 1.db
+    sql_is all.db "SELECT count(*) FROM sqlite_schema WHERE name = 'v_swept'" 0
+    works mimdsim merge all.db 2.db
+    sql_is all.db "SELECT group_concat(hop_latency, ' ') FROM (SELECT hop_latency FROM v_swept ORDER BY 1)" '1.0e-06 2.0e-06'
+    works mimdsim plot all.db --x hop_latency --y makespan_s
+    # of several, also when a later one is refused
+    rm all.db
+    echo none >bad.db
+    run mimdsim merge all.db 1.db 2.db bad.db
+    [ "$status" -ne 0 ]
+    sql_is all.db 'SELECT count(DISTINCT hop_latency) FROM v_swept' 2
+}
+
 @test "a run that failed is replaced by one that ended ok, never the other way round" {
     scenario
     works mimdsim run own.yaml -o good.db --quiet

@@ -144,7 +144,8 @@ digests() { sql "$1" 'SELECT level, n, digest FROM run ORDER BY level, n'; }
     stderr_is_empty
     # It is the same machine, and its identity is that of before.
     sql_is own.db 'SELECT count(*) FROM run' 1
-    sql_is own.db "SELECT number FROM v_setting WHERE key = 'machine.network.link.bandwidth'" 0.0
+    sql_is own.db "SELECT value, number IS NULL FROM v_setting WHERE key = 'machine.network.link.bandwidth'" 'unlimited|1'
+    sql_is own.db "SELECT s.number FROM setting s WHERE s.key = 'machine.network.link.bandwidth'" 0.0
     works mimdsim machines ideal
     stdout_says 'unlimited'
     works mimdsim keys copy.bandwidth

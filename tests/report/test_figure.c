@@ -61,7 +61,7 @@ static int make_fixture(void **state)
             struct run_spec spec = made_spec(a, "t3e-300", p, p, 0);
             spec.machine.network.level = level ? LEVEL_LINK : LEVEL_LOGGP;
             made_identity(&spec, a);
-            struct run_result r = made_result(a, &spec);
+            const struct run_result r = made_result(a, &spec);
             assert_true(store_put(f->s, &spec, NULL, &r, &f->e));
         }
     arena_destroy(a);
@@ -450,14 +450,15 @@ static void put_tables(struct fixture *f)
     }
 }
 
-/* The figures that the program ships, drawn from made data: gnuplot has nothing to complain
- * about. */
-/* Made runs have no loads of links, paths, ranges or measurements (own bats files draw these). */
+/* Made runs have no rows for these: figures.bats, which reads this list, draws them from real ones,
+ * attacks.bats `explain`, jobs.bats `interference`. Each is known by its whole name. */
+static const char *const of_other_rows[] = {"explain", "interference", "linkmap", "load", "pingpong",
+                                            "roofline", "slack", "speedup", "uncertainty", "why"};
 static bool is_of_other_rows(const char *figure)
 {
-    return strstr(" interference linkmap pingpong explain speedup why roofline slack load "
-                  "uncertainty ",
-                  figure);
+    size_t k = sizeof of_other_rows / sizeof *of_other_rows;
+    while (k > 0 && strcmp(of_other_rows[k - 1], figure) != 0) k--;
+    return k > 0;
 }
 
 static void every_shipped_figure_can_be_drawn(void **state)
@@ -466,9 +467,10 @@ static void every_shipped_figure_can_be_drawn(void **state)
     char **name;
     put_machines(f);
     put_tables(f);
-    int n = report_figures(MIMDSIM_SRCDIR, &name);
+    int n = report_figures(MIMDSIM_SRCDIR, &name), others = 0;
     assert_true(n >= 9);
     for (int i = 0; i < n; i++) {
+        others += is_of_other_rows(name[i]);
         struct report_drawings drawings;
         char svg[160];
         if (!is_of_other_rows(name[i])) {
@@ -487,9 +489,9 @@ static void every_shipped_figure_can_be_drawn(void **state)
         free(name[i]);
     }
     free(name);
+    assert_int_equal(others, sizeof of_other_rows / sizeof *of_other_rows); /* each is a figure */
     struct text csv = read_out(f, "fig6.csv");
-    assert_non_null(
-        strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel_fraction"));
+    assert_non_null(strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel"));
     text_free(&csv);
 }
 

@@ -113,7 +113,7 @@ static void nothing_is_lost(void **state)
         assert_non_null(store_remark(s));
         assert_non_null(strstr(store_remark(s), f->kept));
         store_close(s);
-        is(f->path, "PRAGMA user_version", "8");
+        is(f->path, "PRAGMA user_version", "9");
         is(f->path, rows_of_runs, runs);
         is(f->path, count_of_rows, count);
         /* Rows of ranks, now entries of one text a run, keep every value. */
@@ -311,7 +311,7 @@ static void versions_before_the_oldest_are_refused_with_a_way_out(void **state)
     assert_null(store_open(f->path, STORE_READ, &f->e));
     assert_non_null(strstr(
         f->e.text,
-        "has schema version 3, this program knows versions 4 to 8; run its scenarios again"));
+        "has schema version 3, this program knows versions 4 to 9; run its scenarios again"));
 }
 
 /* Upgrade in a child that is killed after `delay` seconds; whether it had ended before. */
@@ -345,7 +345,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
     for (int i = 0; i < 60 || (i < 600 && (old <= 10 || new <= 10)); i++) {
         make_old(f, 4);
         whole += upgrade_and_kill(f, random_uniform(&random, 0, once));
-        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "8") == 0;
+        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "9") == 0;
         upgraded ? new ++ : old++;
         if (!upgraded) is(f->path, "PRAGMA user_version", "4");
         is(f->path, "PRAGMA integrity_check", "ok");
@@ -360,7 +360,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
         /* The next one who comes finishes it. */
         if (i % 8) continue;
         store_close(open_or_fail(f, STORE_WRITE));
-        is(f->path, "PRAGMA user_version", "8");
+        is(f->path, "PRAGMA user_version", "9");
         is(f->path, rows_of_runs, runs);
     }
     print_message("%d old, %d new, %d not killed\n", old, new, whole);
