@@ -83,7 +83,7 @@ fail() {
 start() {
     export -f "run_$1"
     export MIMDSIM
-    setsid bash -c "run_$1" >out 2>err &
+    setsid env --default-signal=INT bash -c "run_$1" >out 2>err &
     job=$!
 }
 members() { ps -o pid= --sid "$1" 2>/dev/null || true; }
