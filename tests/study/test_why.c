@@ -380,11 +380,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pingpong_is_what_its_closed_form_says),
         cmocka_unit_test(a_memory_that_binds_is_a_parameter_of_the_path),
-<<<<<<< HEAD
         cmocka_unit_test(copies_of_an_engine_are_parameters_of_the_path),
-=======
         cmocka_unit_test(cables_have_a_cause_and_a_derivative_of_their_own),
->>>>>>> 4520d31 (why: long cables are a cause and a parameter of their own)
         cmocka_unit_test(counts_are_derivatives_to_the_picosecond),
         cmocka_unit_test(derivatives_with_contention_are_near),
         cmocka_unit_test(the_path_is_whole_everywhere),
