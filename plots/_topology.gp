@@ -20,7 +20,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,0.975 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.948 center noenhanced textcolor rgb grey
     set label 96 note at screen 0.02,0.014 left noenhanced font least(format) textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.014 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.014 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.5,0.925 center horizontal maxrows 1 samplen 1.6 width 1
     if (drawn > 0) {
         plot lines using (of(0)):(column("y")):(column("dx")):(column("dy")) with vectors nohead linewidth width_of(drawn) linecolor rgb "#a8b4c0", \

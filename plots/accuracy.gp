@@ -63,7 +63,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,at_y(18) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
     set label 96 notes[b] at screen at_x(14),at_y(66) left noenhanced font tiny textcolor rgb grey
-    set label 99 provenance at screen 0.99,at_y(total - 9) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,at_y(total - 9 - foot_lift(provenance, page_wide)) right noenhanced font least(format) textcolor rgb grey
     do for [side=1:sides] { do for [c=1:panels] { if (b == 1 || most[c] > 0) {
         across = b == 1 ? c : side
         cost = across == 1 ? "host_s" : "machine_s"

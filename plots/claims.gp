@@ -56,7 +56,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,at_y(18) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(46) center noenhanced font tiny textcolor rgb grey
     set label 96 note at screen 0.5,at_y(66) center noenhanced font tiny textcolor rgb grey
-    set label 99 provenance at screen 0.99,at_y(high - 9) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,at_y(high - 9 - foot_lift(provenance, page_wide)) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.5,at_y(78) center top horizontal maxrows 1 samplen 1.2 width 1
     plot for [j=0:2] data using (is(j, column("x"))):"y":"half":(0.44) with boxxyerror linewidth 0.3 \
             fillcolor rgb grade_colour[j+1] title grade_name[j+1], \

@@ -34,7 +34,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,1.0 - 20.0/high center noenhanced font large(format)
     set label 98 subline at screen 0.5,1.0 - 20.0/high - 0.032 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set label 96 claim at screen 0.5,(1.0 - 64.0/high) center noenhanced font tiny textcolor rgb grey
     set lmargin at screen 0.11; set rmargin at screen 0.82; set tmargin at screen 1.0 - 90.0/high; set bmargin at screen 96.0/high
     set xlabel x_label noenhanced offset 0,name_lift(format); set ylabel y_label noenhanced offset 0.8,0

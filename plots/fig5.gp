@@ -35,7 +35,7 @@ do for [format in formats] {
     set key at screen 0.53,0.89 center top horizontal maxrows 1 samplen 1.2 width 1
     set label 97 headline at screen 0.5,0.97 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.925 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     plot NaN, for [j=1:seen] keyentry with boxes linewidth 0.6 fillcolor rgb part_colour[j] title part_name[j]
     unset key; unset label 97; unset label 98; unset label 99
     set border 3; set ytics nomirror out scale 0.6

@@ -25,7 +25,7 @@ do for [format in formats] {
     set lmargin at screen 0.085; set rmargin at screen 0.93; set tmargin at screen 0.765; set bmargin at screen 0.115
     set label 97 headline at screen 0.5,0.97 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.93 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.08,0.905 left top vertical maxrows 3 samplen 3.5
     set xrange [0:pmax*1.02]; set yrange [0:top]
     set xtics offset 0,tick_lift(format)

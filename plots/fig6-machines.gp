@@ -39,7 +39,7 @@ do for [format in formats] {
     unset border; unset tics; unset logscale; set xrange [0:1]; set yrange [0:1]
     set label 97 headline at screen 0.5,(1.0 - 18/high) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 42/high) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,(8/high) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(8/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,(1.0 - 56/high) center top horizontal maxrows rows samplen 3 width -3
     plot NaN, keyentry with lines linewidth 0.8 linecolor rgb pale title "Amdahl f = 0.70 … 0.98", \
          keyentry with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \

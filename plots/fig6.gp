@@ -44,7 +44,7 @@ do for [format in formats] {
     set ylabel "speedup S over the serial code"
     set xlabel ""
     set format x ""
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     do for [i=1:words(fractions)] {
         f = real(word(fractions, i))
         set label 10+i sprintf("%.2f", f) at pmax*1.09,amdahl(f, pmax) left font small(format) textcolor rgb grey

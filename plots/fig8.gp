@@ -30,7 +30,7 @@ do for [format in formats] {
     unset border; unset tics; set xrange [0:1]; set yrange [0:1]
     set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.925 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,0.898 center top horizontal maxrows 1 samplen 1.2 width -1
     plot NaN, for [j=1:5] keyentry with boxes linewidth 0.6 fillcolor rgb kind_colour[j] title kind_name[j]
     unset label 97; unset label 98; unset label 99

@@ -29,7 +29,7 @@ do for [format in formats] {
     unset border; unset tics; unset logscale; set yrange [0:1]
     set label 97 headline at screen 0.5,0.975 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.943 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,0.925 center top horizontal maxrows (last > 5 ? 2 : 1) samplen 3 width -1
     plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype (k > 6 ? hollow[turn(k)] : point[turn(k)]) pointsize 0.8 \
             linecolor rgb colour[turn(k)] title sprintf("n/P = %d", ratio[k]), \

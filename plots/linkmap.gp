@@ -31,7 +31,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,1.0 - 20.0/tall center noenhanced font large(format)
     set label 98 subline at screen 0.5,1.0 - 20.0/tall - 0.032 center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     do for [p=1:panels] {
         column_of = int((p - 1) % 2)
         row_of = int((p - 1)/2)

@@ -24,7 +24,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,(1.0 - 20/high_px) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 44/high_px) center noenhanced textcolor rgb grey font small(format)
-    set label 99 provenance at screen 0.99,(9/high_px) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(9/high_px + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set tmargin at screen 1.0 - 68.0/high_px; set bmargin at screen (72.0 + 20*rows)/high_px
     set xtics autofreq offset 0,tick_lift(format)
     set xrange [0:*]

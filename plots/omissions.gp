@@ -28,7 +28,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set lmargin at screen 0.05; set rmargin at screen 0.98; set tmargin at screen 0.9; set bmargin at screen 0.1
     unset border; unset xtics; unset ytics; unset xlabel; unset grid
     set xrange [0:1]; set yrange [0:1]

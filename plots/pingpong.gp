@@ -47,7 +47,7 @@ do for [format in formats] {
         if (p == 1) {
             set label 97 headline at screen 0.5,(1.0 - 20/high) center noenhanced font large(format)
             set label 98 subline at screen 0.5,(1.0 - 44/high) center noenhanced textcolor rgb grey
-            set label 99 provenance at screen 0.99,(9/high) right noenhanced font least(format) textcolor rgb grey
+            set label 99 foot(provenance, page_wide) at screen 0.99,(9/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
         } else { unset label 97; unset label 98; unset label 99 }
         if (c == 0) { set ylabel "one way [µs]"; set format y "10^{%T}" } else { unset ylabel; set format y "" }
         set xlabel "message [B]" offset 0,name_lift(format)

@@ -27,7 +27,7 @@ do for [format in formats] {
     set lmargin at screen 0.1; set rmargin at screen 0.74; set tmargin at screen 0.885; set bmargin at screen 0.135
     set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.918 center noenhanced textcolor rgb grey font tiny
-    set label 99 provenance at screen 0.99,0.016 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, 820) at screen 0.99,(0.016 + foot_lift(provenance, 820)*1.0/560) right noenhanced font least(format) textcolor rgb grey
     set xtics offset 0,tick_lift(format); set format x "10^{%T}"; set format y "10^{%T}"
     set xlabel "operations for each byte sent [flop/B]" offset 0,name_lift(format)
     set ylabel "one processor [Mflop/s]"

@@ -42,7 +42,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,at_y(high_px - 9) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,at_y(high_px - 9 - foot_lift(provenance, page_wide)) right noenhanced font least(format) textcolor rgb grey
     if (logarithmic) { set logscale x 2; set xrange [(zero ? none/1.3 : xlow/1.15):xhigh*1.15] } \
     else { set xrange [xlow - 0.05*(xhigh - xlow) - (xhigh > xlow ? 0 : 1):xhigh + 0.05*(xhigh - xlow) + (xhigh > xlow ? 0 : 1)] }
     if (steep) { set logscale y; set yrange [scale*low/1.3:scale*high*1.3] } else { set yrange [0:scale*high*1.08] }

@@ -28,7 +28,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,(1.0 - 20/high) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 44/high) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,(9/high) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(9/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     set logscale x 2; set logscale y 2
     set xrange [pmin*0.9:pmax*1.12]; set yrange [ymin:ymax]
     set xtics offset 0,tick_lift(format)

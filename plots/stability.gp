@@ -50,7 +50,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,at_y(18) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
     set label 96 note at screen at_x(14),at_y(66) left noenhanced font tiny textcolor rgb grey
-    set label 99 provenance at screen 0.99,at_y(total - 9) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,at_y(total - 9 - foot_lift(provenance, page_wide)) right noenhanced font least(format) textcolor rgb grey
     # the frame is as wide as the page, so that names and numbers beside the cells are inside
     set lmargin at screen at_x(4); set rmargin at screen at_x(wide - 4)
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper + cell_high*(rows + (motions ? 0 : 0.5)))

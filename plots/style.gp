@@ -12,15 +12,21 @@ set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
-# A line that is longer than a page of wide pixels goes on two, divided behind a semicolon or a comma of its second half;
-# foot_high is where they stand above the lower edge.
+# A line that is longer than a page of wide pixels goes on, on up to four: each ends behind the last semicolon or comma that
+# has room, else behind a blank. foot_high is where the first stands above the lower edge, foot_lift how much higher than one
+# alone.
 room(wide) = int(wide/5.4)
-behind(s, mark) = strstrt(s[int(strlen(s)/2):*], mark)
-divided(s, mark, k) = s[1:int(strlen(s)/2) + k + strlen(mark) - 2]."\n".s[int(strlen(s)/2) + k + strlen(mark) - 1:*]
-foot(s, wide) = strlen(s) <= room(wide) ? s : \
-    behind(s, "; ") > 0 && int(strlen(s)/2) + behind(s, "; ") <= room(wide) ? divided(s, "; ", behind(s, "; ")) : \
-    behind(s, ", ") > 0 ? divided(s, ", ", behind(s, ", ")) : s
-foot_high(s, wide) = strlen(s) <= room(wide) ? 9 : 22
+is_end(s, k) = s[k:k] eq " " && (s[k-1:k-1] eq ";" || s[k-1:k-1] eq "," || s[k-1:k-1] eq "‚")
+last_end(s, k) = k < 2 ? 0 : (is_end(s, k) ? k : last_end(s, k - 1))
+last_blank(s, k) = k < 2 ? 0 : (s[k:k] eq " " ? k : last_blank(s, k - 1))
+behind(s, n) = last_end(s, n) > n/2 ? last_end(s, n) : (last_blank(s, n) > 0 ? last_blank(s, n) : n)
+on(s, wide, more) = strlen(s) <= room(wide) || more == 0 ? s : \
+    s[1:behind(s, room(wide))]."\n".on(s[behind(s, room(wide)) + 1:*], wide, more - 1)
+further(s, wide, more) = strlen(s) <= room(wide) || more == 0 ? 0 : \
+    1 + further(s[behind(s, room(wide)) + 1:*], wide, more - 1)
+foot(s, wide) = on(s, wide, 3)
+foot_lift(s, wide) = 13*further(s, wide, 3)
+foot_high(s, wide) = 9 + foot_lift(s, wide)
 
 # A PNG has twice the pixels of the SVG, and its fonts, lines, symbols and dashes are scaled so that both look alike.
 png_font = "DejaVu Sans,19"; svg_font = "DejaVu Sans,13"

@@ -31,7 +31,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,(1.0 - 20/high) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 44/high) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,(9/high) right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(9/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     # times
     set lmargin at screen 0.105; set rmargin at screen 0.97
     set tmargin at screen 1.0 - (68.0 + 20*last)/high; set bmargin at screen (below + 78)/high

@@ -25,7 +25,7 @@ do for [format in formats] {
     set multiplot
     set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey
-    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+    set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     unset ytics
     set yrange [n + 0.55:0.45]
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper + row_high*n)

@@ -60,6 +60,7 @@ void explain_variant(const struct claim_rule *rule, const char *baseline, enum o
 
 /* --- grades ----------------------------------------------------------------------------------- */
 
+/* What a stored point says of one claim in one variant; NULL: that was not judged there. */
 static const struct explain_verdict *verdict_of(const struct explain_point *p, int rule,
                                                 const char *variant)
 {
@@ -88,6 +89,7 @@ static struct explain_grade grade_with(const struct explain_goal *g, const struc
     return w;
 }
 
+/* Whether another serial code could make one of these claims hold: some compare with none. */
 static bool any_baseline(const struct explain_subject *s)
 {
     for (int i = 0; i < s->nrule; i++)
@@ -95,6 +97,7 @@ static bool any_baseline(const struct explain_subject *s)
     return false;
 }
 
+/* Whether this style of operators is the one that a claim's own verdict rests on. */
 static bool own_operators(const struct explain_goal *g)
 {
     for (int i = 0; i < g->subject->nrule; i++)
@@ -102,6 +105,8 @@ static bool own_operators(const struct explain_goal *g)
     return false;
 }
 
+/* An order without ties of opinion: whatever holds, then the smallest change, then the smallest
+ * lack. A margin that is not known is the worst. */
 bool explain_better(const struct explain_grade *a, const struct explain_grade *b)
 {
     if (a->holds != b->holds) return a->holds; /* what holds is always better */
@@ -110,6 +115,8 @@ bool explain_better(const struct explain_grade *a, const struct explain_grade *b
     return a->margin > b->margin;
 }
 
+/* The best that can be said of a point: with the claim's own baseline, or another one, whose price
+ * is a longer way from the paper. */
 struct explain_grade explain_grade_point(const struct explain_goal *g,
                                          const struct explain_point *p, const double *u)
 {
@@ -136,6 +143,8 @@ struct round {
     bool collecting; /* but these points do not depend on each other */
 };
 
+/* One point more for the next campaign, unless somebody has asked for it: points are simulated
+ * together, since runs are what a search costs. */
 static void ask(struct round *r, const double *u)
 {
     struct explain_goal *g = &r->search->goal;
@@ -150,6 +159,7 @@ static void ask(struct round *r, const double *u)
     memcpy(q->u, u, sizeof q->u);
 }
 
+/* Keeps the better one. */
 static void consider(struct explain_best *best, const double *u, const struct explain_grade *grade)
 {
     if (best->any && !explain_better(grade, &best->grade)) return;
@@ -248,6 +258,8 @@ static bool scan_axis(struct round *r, int i, double end)
     return scan_boundary(r, i, 0, end);
 }
 
+/* Every axis alone, from the nominal point to its ends: which of them matter, and whether one alone
+ * would do. False while points are missing. */
 static bool scan(struct round *r)
 {
     struct explain_search *s = r->search;
@@ -302,6 +314,8 @@ struct descent {
     int n, axis[EXPLAIN_MOST_AXES];
 };
 
+/* What GSL minimises. Where a point has yet to be made the rest of this descent is thrown away, and
+ * made again with it in the next round. */
 static double simplex_cost(const gsl_vector *x, void *context)
 {
     struct descent *d = context;

@@ -89,3 +89,23 @@ shown() {
             { echo "nobody draws $figure"; return 1; }
     done
 }
+
+@test "a foot that is longer than the page goes on in further lines, none of them longer, and nothing is lost" {
+    long='error of level not known, machine not known, arithmetic <= 8e-10; mimdsim 0.1.0 (5a20a0e3c74e), 41 runs, configurations'
+    long="$long c08d40d609aa; t3e-300, paragon and 2 more; left out: runs 18 on t3e-300, topology.dims 16x8x8, 12 on t3e-300,"
+    long="$long background.load 30 %, background.message 4 KiB and 3 more (28); drawn by d3d8ac9415ff"
+    for text in "$long" 'mimdsim 0.1.0 (5a20a0e3c74e); drawn by d3d8ac9415ff' "${long// /_}"; do
+        printf '%s\n' "$text" >x.provenance
+        for wide in 640 800 1200; do
+            {
+                echo "figure = 'x'"
+                cat "$MIMDSIM_SRCDIR/plots/style.gp"
+                echo "set print 'foot'; print foot(provenance, $wide); set print 'lift'; print foot_lift(provenance, $wide)"
+            } >foot.gp
+            works gnuplot -d foot.gp
+            [ "$(awk -v most=$((wide * 10 / 54)) 'length($0) > most' foot | wc -l)" -eq 0 ] || { cat foot; return 1; }
+            [ "$(tr -d '\n' <foot)" = "$text" ]
+            [ "$(cat lift)" -eq $((13 * ($(wc -l <foot) - 1))) ]
+        done
+    done
+}
