@@ -12,14 +12,19 @@ set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
-# A line that is longer than a page of wide pixels goes on, on up to four: each ends behind the last semicolon or comma that
-# has room, else behind a blank. foot_high is where the first stands above the lower edge, foot_lift how much higher than one
-# alone.
+# A line that is longer than a page of wide pixels goes on, on up to four. Where two are enough the first ends behind the
+# first semicolon of the second half, or the first comma; else each behind the last of them that has room, or a blank.
+# foot_high is where the first stands above the lower edge, foot_lift how much higher than one alone.
 room(wide) = int(wide/5.4)
 is_end(s, k) = s[k:k] eq " " && (s[k-1:k-1] eq ";" || s[k-1:k-1] eq "," || s[k-1:k-1] eq "‚")
 last_end(s, k) = k < 2 ? 0 : (is_end(s, k) ? k : last_end(s, k - 1))
 last_blank(s, k) = k < 2 ? 0 : (s[k:k] eq " " ? k : last_blank(s, k - 1))
-behind(s, n) = last_end(s, n) > n/2 ? last_end(s, n) : (last_blank(s, n) > 0 ? last_blank(s, n) : n)
+half(s) = int(strlen(s)/2)
+second(s, mark) = strstrt(s[half(s):*], mark) > 0 ? half(s) + strstrt(s[half(s):*], mark) : 0
+fits(k, n) = k > 0 && k <= n
+middle(s, n) = strlen(s) > 2*n ? 0 : (fits(second(s, "; "), n) ? second(s, "; ") : (fits(second(s, ", "), n) ? second(s, ", ") : 0))
+behind(s, n) = middle(s, n) > 0 ? middle(s, n) : late(s, n)
+late(s, n) = last_end(s, n) > n/2 ? last_end(s, n) : (last_blank(s, n) > 0 ? last_blank(s, n) : n)
 on(s, wide, more) = strlen(s) <= room(wide) || more == 0 ? s : \
     s[1:behind(s, room(wide))]."\n".on(s[behind(s, room(wide)) + 1:*], wide, more - 1)
 further(s, wide, more) = strlen(s) <= room(wide) || more == 0 ? 0 : \

@@ -265,7 +265,7 @@ static bool predict_all(struct summary *s, const struct plan *p, struct err *e)
         ok =
             err_set(e, ERR_NO_INPUT,
                     "%s has no measured run of this scenario; make some by mpirun -n 2 mimdsim run "
-                    "%s --backend mpi",
+                    "%s --backend mpi --set ranks=2, and ask here with the same --set",
                     s->c->database, p->name);
     if (ok) print_summary(s);
     return ok;
