@@ -81,11 +81,11 @@ shown() {
     for figure in why uncertainty linkmap pingpong speedup; do drawn $figure; done
 }
 
-@test "every figure that made rows cannot draw is drawn here, or in the tests of the claims' answers" {
+@test "every figure that made rows cannot draw is drawn here, or in tests of its own" {
     list=$(sed -n '/of_other_rows\[\] = {/,/};/p' "$MIMDSIM_SRCDIR/tests/report/test_figure.c" | grep -o '"[a-z]*"' | tr -d '"')
     [ "$(wc -w <<<"$list")" -ge 9 ]
     for figure in $list; do
-        [ "$figure" = explain ] || grep -qE "(drawn|for figure in).*\b$figure\b" "$BATS_TEST_DIRNAME/figures.bats" ||
+        [[ " explain interference " == *" $figure "* ]] || grep -qE "(drawn|for figure in).*\b$figure\b" "$BATS_TEST_DIRNAME/figures.bats" ||
             { echo "nobody draws $figure"; return 1; }
     done
 }
