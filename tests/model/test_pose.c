@@ -214,6 +214,15 @@ static void settings_scale_what_is_drawn(void **state)
         assert_true(one->qd[i] != 0 && one->tau[i] != one->qd[i]);
     }
     assert_non_null(more->fext);
+    /* a slide's rate is that of a turn times a link's length */
+    spec.rate = 1, spec.torque = 1, spec.external_force = 0, spec.length = 4;
+    const struct state *longer_links = state_generate(m, &spec, arena);
+    for (int i = 0; i < m->nu; i += 2) {
+        assert_true(longer_links->qd[i] == one->qd[i]);
+        assert_true(fabs(longer_links->qd[i + 1] - 4 * one->qd[i + 1]) <= 1e-14);
+        assert_true(fabs(longer_links->tau[i + 1] - one->tau[i + 1] / 4) <= 1e-14);
+    }
+    spec.length = 1;
     /* the base moves only where it is asked to */
     spec.base_acceleration[1] = 7, spec.base_acceleration[5] = 8;
     assert_true(state_generate(m, &spec, arena)->base_acceleration[5] == 0);

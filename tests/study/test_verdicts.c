@@ -288,9 +288,10 @@ static void the_matrix_has_the_largest_error_of_each_algorithm(void **state)
         {.algorithm = "parallel forward direct cr", .quantity = "qdd_fd", .plain = 1e-12},
         /* an answer that is no number is the worst of all */
         {.algorithm = "parallel forward direct pcr", .quantity = "qdd_fd", .plain = NAN},
+        {.algorithm = "parallel forward direct thomas", .quantity = "qdd_fd", .plain = 1e-3},
     };
     const struct verify_report r[] = {
-        {.name = "one", .nbody = 7, .nrow = 9, .row = row, .passed = true, .peer_fd = 4e-14},
+        {.name = "one", .nbody = 7, .nrow = 10, .row = row, .passed = true, .peer_fd = 4e-14},
         {.name = "two", .nbody = 8, .nrow = 0, .passed = false, .peer_fd = NAN}};
     char *out = printed(verify_print_matrix, r, 2), found[80];
     static const struct {
