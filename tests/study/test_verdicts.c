@@ -68,9 +68,9 @@ static void classes_have_stated_accuracies(void **state)
     }
     struct netcheck_row routed = load_of(1.6);
     routed.routed = true;
-    assert_true(netcheck_accuracy_of(&routed, LEVEL_FLIT)->high == 0.05);
+    assert_true(netcheck_accuracy_of(&routed, LEVEL_FLIT)->high == 0.03);
     routed.crowding = 1.7;
-    assert_true(netcheck_accuracy_of(&routed, LEVEL_FLIT)->high == 0.15);
+    assert_true(netcheck_accuracy_of(&routed, LEVEL_FLIT)->high == 0.20);
     assert_true(netcheck_accuracy_of(&routed, LEVEL_LINK)->high == 3.00);
     /* every entry is a range around 0, and the list has an end */
     int n = 0;
