@@ -269,38 +269,38 @@ static void pictures_are_whole_or_not_there(void **state)
     struct err e;
     scratch_make(folder, sizeof folder);
     err_clear(&e);
-    assert_false(images_check(folder, "a", &e)); /* neither */
+    assert_false(images_check(folder, "figures", "a", &e)); /* neither */
     assert_int_equal(e.kind, ERR_UNAVAILABLE);
     put_file(folder, "a.png", png, npng);
     err_clear(&e);
-    assert_true(images_check(folder, "a", &e));
+    assert_true(images_check(folder, "figures", "a", &e));
     put_file(folder, "a.svg", svg, nsvg);
-    assert_true(images_check(folder, "a", &e));
+    assert_true(images_check(folder, "figures", "a", &e));
     /* what is there has its end, also beside a whole one */
     for (size_t cut = 1; cut <= 12; cut++) {
         put_file(folder, "a.png", png, npng - cut);
         err_clear(&e);
-        assert_false(images_check(folder, "a", &e));
+        assert_false(images_check(folder, "figures", "a", &e));
         assert_int_equal(e.kind, ERR_IO);
-        assert_non_null(strstr(e.text, "a.png"));
+        assert_non_null(strstr(e.text, "figures/a.png"));
     }
     put_file(folder, "a.png", png, npng);
     for (size_t cut = 3; cut <= nsvg; cut++) {
         put_file(folder, "a.svg", svg, nsvg - cut);
         err_clear(&e);
-        assert_false(images_check(folder, "a", &e));
-        assert_non_null(strstr(e.text, "a.svg"));
+        assert_false(images_check(folder, "figures", "a", &e));
+        assert_non_null(strstr(e.text, "figures/a.svg"));
     }
     images_remove(folder, "a");
     char path[500];
     assert_int_equal(access(scratch_path(path, sizeof path, folder, "a.png"), F_OK), -1);
     assert_int_equal(access(scratch_path(path, sizeof path, folder, "a.svg"), F_OK), -1);
     err_clear(&e);
-    assert_false(images_check(folder, "a", &e));
+    assert_false(images_check(folder, "figures", "a", &e));
     images_remove(folder, "a"); /* again: nothing is there */
     put_file(folder, "a.svg", svg, nsvg);
     err_clear(&e);
-    assert_true(images_check(folder, "a", &e));
+    assert_true(images_check(folder, "figures", "a", &e));
     scratch_remove(folder);
 }
 

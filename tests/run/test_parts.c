@@ -240,7 +240,23 @@ static void a_refusal_keeps_its_reason(void **state)
 
 /* ---- Ctrl-C ---- */
 
-enum how { HEARD, ENDED, SILENT, IGNORED };
+enum how { HEARD, ENDED, NOTHING_TO_DO, SECOND, IGNORED };
+
+/* What the child does until it is ended; it lives on, with status 7, where the signal is ignored.
+ */
+static _Noreturn void live(int number, enum how how)
+{
+    struct interrupt x, second;
+    signal(number, how == IGNORED ? SIG_IGN : SIG_DFL);
+    interrupt_begin(&x, "runs.db", how == NOTHING_TO_DO ? 0 : 5);
+    atomic_store(&x.stored, 3);
+    if (how == ENDED) interrupt_end(&x);
+    if (how == SECOND) interrupt_begin(&second, NULL, 9);
+    /* to the process: a signal of one thread alone would wait for ever */
+    kill(getpid(), number);
+    if (how != IGNORED) sleep(20);
+    _exit(7);
+}
 
 /* A child that gets `number` in the state `how`: how it ends, and what it has said. */
 static int child(int number, enum how how, char *said, size_t size)
@@ -250,14 +266,8 @@ static int child(int number, enum how how, char *said, size_t size)
     const pid_t pid = fork();
     assert_true(pid >= 0);
     if (pid == 0) {
-        struct interrupts before;
         dup2(end[1], STDERR_FILENO);
-        signal(number, how == IGNORED ? SIG_IGN : SIG_DFL);
-        interrupts_begin(&before);
-        if (how == ENDED) interrupts_end(&before);
-        if (how == SILENT) interrupts_silent();
-        raise(number);
-        _exit(7); /* still here */
+        live(number, how);
     }
     close(end[1]);
     ssize_t n = 0, k;
@@ -278,10 +288,14 @@ static void whoever_ends_a_campaign_is_told_that_rows_stay(void **state)
         int status = child(number, HEARD, said, sizeof said);
         assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
         assert_non_null(strstr(said, "what is stored stays"));
+        assert_non_null(strstr(said, "3 of 5 runs were made, into runs.db"));
+        status = child(number, SECOND, said, sizeof said); /* the first one knows most */
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+        assert_non_null(strstr(said, "3 of 5 runs were made, into runs.db"));
         status = child(number, ENDED, said, sizeof said); /* as it was before */
         assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
         assert_string_equal(said, "");
-        status = child(number, SILENT, said, sizeof said); /* a worker */
+        status = child(number, NOTHING_TO_DO, said, sizeof said);
         assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
         assert_string_equal(said, "");
         status = child(number, IGNORED, said, sizeof said); /* under nohup */
