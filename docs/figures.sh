@@ -71,3 +71,10 @@ done
 rm figures.db
 "$MIMDSIM" run speedup-t3e --set n=16,64 --set level=loggp --uncertainty 16 -o figures.db --quiet >/dev/null
 figure tutorial-uncertainty uncertainty
+
+# those of what-if.md, each by its command
+for name in bandwidth-or-latency torus-or-dragonfly adaptive-routing placement oversubscription eager-limit offload ten-times \
+    energy failed-link; do
+    "$MIMDSIM" run what-if-$name -o figures.db --dir drawn --quiet >/dev/null
+    cp drawn/what-if-$name.svg "$into/"
+done

@@ -22,6 +22,7 @@
 #include "run/run.h"
 #include "spec/field.h"
 #include "store/store.h"
+#include "study/network_remarks.h"
 #include "study/savings.h"
 
 static const char doc[] =
@@ -207,6 +208,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
                t.host_bytes / 1e6);
     print_threads(p, r);
     print_nodes(p, r);
+    network_remarks_print(p, stdout);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
         /* Whether the omission can change a result at all comes first. "left out (exact, in 3 of 12
@@ -298,11 +300,13 @@ static void print_json(const struct plan *p, const struct run_estimate *r,
     struct json j = json_make(stdout);
     json_object(&j);
     struct kinds *k = kinds_of(p, r);
+    network_collectives_json(p, &j);
     json_key(&j, "omissions");
     columns_json_list(&kind_columns, k->kind, k->n, sizeof *k->kind, &j);
     free(k);
-    /* keys in the order of the alphabet: omissions, question, runs, savings, unused */
+    /* keys in the order of the alphabet: omissions, question, routing, runs, savings, unused */
     json_key_text(&j, "question", p->question);
+    network_routing_json(p, &j);
     json_key(&j, "runs");
     json_array(&j);
     for (int i = 0; i < p->nrun; i++)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/answer.h"
 #include "app/arguments.h"
 #include "app/backend.h"
 #include "app/campaign_mpi.h"
@@ -57,6 +58,8 @@ static const char doc[] =
     "columns instead (names with commas, or all). --csv: all of them, for programs.\n\n"
     "A scenario with `optimise:` is searched: the answer is the best setting for each point of the "
     "other axes (docs/studies.md).\n\n"
+    "A scenario with `answer:` is answered by a sentence behind the table, and by a picture in the "
+    "folder --dir (docs/what-if.md): mimdsim run what-if-failed-link.\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it out); the predicted time includes it.";
 
@@ -269,6 +272,24 @@ static bool is_single(const struct plan *p, const struct asked *asked, const str
     return p->nrun == 1 && !job->on && !k->spread && asked->uncertainty.n == 0 && p->search == NULL;
 }
 
+/* The question's answer behind the rows, for people: a sentence, then the picture. */
+static bool answer_question(const struct common *c, const struct plan *p, const struct asked *asked,
+                            struct store *s, struct err *e)
+{
+    const struct run_table_look *look = &asked->look;
+    if (p->answer == NULL || look->json || look->csv || look->columns != NULL) return true;
+    /* A part of the runs answers nothing. */
+    if (asked->part.shard.of > 0 || asked->part.point != NULL) return true;
+    struct text said = {0};
+    bool ok = answer_sentence(p, s, &said, e);
+    if (ok) printf("\n%s\n%s\n", p->question, said.s);
+    fflush(stdout);
+    ok = ok && answer_draw(p, s, c->directory, e);
+    if (ok && !c->quiet) printf("%s/%s.png\n", c->directory, p->name);
+    text_free(&said);
+    return ok;
+}
+
 /* Settle levels, leave out what is stored, run the rest, print all. */
 static bool answer(const struct common *c, const struct plan *p, const struct asked *asked,
                    struct job *job, struct keep *k, struct err *e)
@@ -308,6 +329,7 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     if (ok && search && asked->look.columns == NULL)
         return search_print(k->store, &settled, &asked->look, stdout, e);
     if (!ok || !run_table_print(k->store, &settled, &asked->look, stdout, e)) return false;
+    if (!answer_question(c, &settled, asked, k->store, e)) return false;
     return u->n == 0 || !u->shares || asked->look.json || asked->look.csv ||
            uncertainty_print(k->store, &settled, stdout, e);
 }
@@ -362,7 +384,8 @@ int cmd_run(int argc, char **argv)
               job_open(&job, spread ? spread : campaign, &e) && understood;
     /* The processes of a job share the processors already. */
     if (job.on && asked.threads == RUN_THREADS_AUTO) asked.threads = 1;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1,
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS | TAKES_DIR,
+                 "SCENARIO|PROGRAM", doc, 1,
                  1);
     job_heard(&job, &c);
     asked.look.json = c.json;
@@ -376,7 +399,8 @@ int cmd_run(int argc, char **argv)
                      .spread = spread != NULL};
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
          run_table_check(&p, &asked.look, &e) &&
-         uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e);
+         uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e) &&
+         answer_check(&p, &e);
     ok = job_agree(&job, &p, ok, &e);
     c.force = c.force || asked.keep_all; /* the same results, but not the same row */
     if (ok)

@@ -11,24 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/outcome.h"
 #include "base/design.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "plan/condition.h"
 #include "report/csv.h"
 #include "report/report.h"
 #include "run/run.h"
-
-/* What a run came to, as far as goals may ask. */
-struct outcome {
-    bool ok;
-    double makespan_s, speedup, efficiency, messages, sent_bytes;
-    int64_t id; /* in table run */
-};
-
-static const struct outcome unknown = {
-    .makespan_s = NAN, .speedup = NAN, .efficiency = NAN, .messages = NAN, .sent_bytes = NAN};
 
 /* A point that was judged. */
 struct judged {
@@ -53,61 +43,14 @@ struct search {
     int group_tried;
 };
 
-/* ---- names and values */
-
-/* What a formula may look at: a run and what it came to. */
-struct scope {
-    struct condition_scope settings;
-    const struct outcome *outcome;
-};
-
-/* Results first, then settings: no setting has such a name. */
-static bool look_up(void *context, const char *name, struct expression_value *v, char *why,
-                    int size)
-{
-    struct scope *s = context;
-    const struct outcome *o = s->outcome;
-    const struct {
-        const char *name;
-        double value;
-        enum unit unit;
-    } result[] = {{"makespan", o->makespan_s, UNIT_TIME},
-                  {"speedup", o->speedup, UNIT_NONE},
-                  {"efficiency", o->efficiency, UNIT_NONE},
-                  {"messages", o->messages, UNIT_NONE},
-                  {"sent_bytes", o->sent_bytes, UNIT_BYTES}};
-    enum { RESULTS = sizeof result / sizeof *result };
-    const char *names[RESULTS];
-    for (int i = 0; i < RESULTS; i++) {
-        names[i] = result[i].name;
-        if (strcmp(result[i].name, name) != 0) continue;
-        *v = (struct expression_value){.number = result[i].value, .unit = result[i].unit};
-        return true;
-    }
-    if (condition_lookup(&s->settings, name, v, why, size)) return true;
-    /* a misspelt result is more likely than a setting that is spelt alike */
-    const char *near = text_nearest(name, names, RESULTS);
-    if (near != NULL)
-        snprintf(why, (size_t)size, "unknown name '%.60s'; did you mean '%s'?", name, near);
-    return false;
-}
+/* ---- values */
 
 /* A formula for a run and what it came to. */
 static bool evaluate(const struct plan_search *asked, const struct expression *x,
                      const struct run_spec *run, const struct outcome *o,
                      struct expression_value *v, struct err *e)
 {
-    char why[256];
-    struct scope s = {{run, arena_create()}, o};
-    bool fine = expression_value(x, look_up, &s, v, why, (int)sizeof why);
-    arena_destroy(s.settings.arena);
-    /* texts were the arena's: a goal and a limit are none */
-    if (fine && v->text != NULL) {
-        fine = false;
-        snprintf(why, sizeof why, "a text, not a number");
-    }
-    return fine || err_set_at(e, ERR_DATA, asked->file, asked->line, "optimise: '%.120s': %s",
-                              expression_text(x), why);
+    return outcome_value(x, run, o, "optimise", asked->file, asked->line, v, e);
 }
 
 /* Goal and limit of a run, and where that puts it. */
@@ -137,41 +80,6 @@ static bool judge(const struct plan_search *asked, const struct run_spec *run, s
 
 /* ---- runs */
 
-/* id, makespan, speedup, efficiency, messages, bytes, status */
-static bool take_outcome(void *context, int ncolumn, const char *const *name,
-                         const char *const *value)
-{
-    struct outcome *o = context;
-    /* numbers first, in the order of the struct */
-    double number[6];
-    (void)ncolumn, (void)name;
-    for (int i = 0; i < 6; i++) number[i] = value[i] != NULL ? strtod(value[i], NULL) : NAN;
-    *o = (struct outcome){.ok = strcmp(value[6], "ok") == 0,
-                          .makespan_s = number[1] * 1e-12,
-                          .speedup = number[2],
-                          .efficiency = number[3],
-                          .messages = number[4],
-                          .sent_bytes = number[5],
-                          .id = (int64_t)number[0]};
-    return false;
-}
-
-/* A run as the database has it: what is stored already is not made again. */
-static bool read_outcome(struct store *s, const struct run_spec *run, struct outcome *o,
-                         struct err *e)
-{
-    char id[24];
-    snprintf(id, sizeof id, "%lld", (long long)store_run_id(s, run));
-    const char *const bound[] = {id};
-    *o = unknown;
-    return store_select(
-        s,
-        "SELECT r.id, r.makespan_ps, v.speedup, v.efficiency, r.messages, r.sent_bytes, r.status"
-        " FROM run r LEFT JOIN v_speedup v ON v.run_id = r.id AND v.baseline = 'fastest serial'"
-        " WHERE r.id = ?1",
-        1, bound, take_outcome, o, e);
-}
-
 /* Every run of a search is a row like any other. */
 static bool keep_run(void *context, const struct run_spec *spec, const struct run_result *r)
 {
@@ -197,7 +105,7 @@ static bool try_point(struct search *x, const double *u, struct judged *j)
         return false;
     /* stored ones count, too: a search asked for again ends at the same point */
     x->tried++;
-    return read_outcome(x->store, &run, &j->outcome, x->err) && judge(a, &run, j, x->err);
+    return outcome_read(x->store, &run, &j->outcome, x->err) && judge(a, &run, j, x->err);
 }
 
 /* The better of two, the first of equals. */
@@ -281,7 +189,7 @@ static bool search_combination(struct search *x, int index)
     x->tried = 0;
     if (x->asked->nrange > 0) return spread(x, start) && descend(x, start);
     /* nothing but listed values: the plan's run is all there is */
-    if (!read_outcome(x->store, &x->plan->run[index], &j.outcome, x->err) ||
+    if (!outcome_read(x->store, &x->plan->run[index], &j.outcome, x->err) ||
         !judge(x->asked, &x->plan->run[index], &j, x->err))
         return false;
     keep_best(x, &j);
@@ -330,7 +238,7 @@ static bool store_best(struct search *x, int group)
 bool search_check(const struct plan *p, struct err *e)
 {
     /* no result yet: comparisons with it are false, which is all that is asked here */
-    struct judged j = {.outcome = unknown};
+    struct judged j = {.outcome = outcome_unknown};
     const struct plan_search *a = p->search;
     if (a == NULL) return true;
     /* counted before anything is built */

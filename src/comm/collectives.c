@@ -168,18 +168,43 @@ int64_t collective_scratch(const struct collective_algorithm *a, const struct co
     return a->scratch ? a->scratch(s, rank) : 0;
 }
 
-/* The caller has chosen: by rules (collective_choose) or by name. */
-void collective_run(const struct collective_algorithm *a, const struct collective_call *k)
-{
-    a->run(k);
-}
-
 /* run_named: by an algorithm that is known to be there. */
 static void run_named(const struct collective_call *k, const char *algorithm)
 {
     const struct collective_algorithm *a = collective_algorithm_find(k->kind, algorithm);
     CHECK(a);
     a->run(k);
+}
+
+/* What a network would do where there is none to do it, as on a real computer: messages that give
+ * the same bits. */
+static void run_without_hardware(const struct collective_call *k)
+{
+    struct collective_call call = *k;
+    switch (k->kind) {
+    case COLLECTIVE_BARRIER:
+        run_named(k, "dissemination");
+        return;
+    case COLLECTIVE_BROADCAST:
+        run_named(k, "binomial");
+        return;
+    case COLLECTIVE_REDUCE:
+        /* To another rank than 0 in the order of a tree at 0: everybody gets it. */
+        call.kind = COLLECTIVE_ALLREDUCE;
+        if (comm_rank(k->comm) != k->root) call.recv = at(k, k->scratch, k->count);
+        break;
+    default:
+        break;
+    }
+    run_named(&call, "reduce-broadcast");
+}
+
+/* The caller has chosen: by rules (collective_choose) or by name. */
+void collective_run(const struct collective_algorithm *a, const struct collective_call *k)
+{
+    const bool network = k->comm->type->meet && k->comm->hardware;
+    if (a->run == hardware_run && !network) run_without_hardware(k);
+    else a->run(k);
 }
 
 void collective_barrier(struct comm *c, int64_t tag)

@@ -37,6 +37,7 @@ struct collective_op {
     void *context;
     bool commutative;
     bool idempotent; /* a op a = a: maxima, not sums */
+    enum comm_operation operation; /* whether networks can do it */
 };
 
 /* One call, the same on every rank but for buffers. Unused parts are zero.
@@ -76,6 +77,8 @@ struct collective_shape {
     int64_t count, total, element;
     bool irregular;                /* counts are given */
     bool commutative, idempotent, exclusive;
+    enum comm_operation operation;        /* of reductions */
+    const struct comm_hardware *hardware; /* of the ranks' network; NULL: none. Borrowed */
 };
 
 /* Costs in closed form, equal blocks. A round is one message out and one in for each rank; path is

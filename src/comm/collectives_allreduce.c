@@ -179,5 +179,6 @@ static const struct collective_algorithm rows[] = {
      reduce_broadcast_cost},
     {"dissemination", "an operation with a op a = a", "Hensgen, Finkel, Manber 1988", counts_twice,
      one_vector, dissemination, dissemination_cost},
+    HARDWARE_ROW,
 };
 COLLECTIVE_TABLE(allreduce_algorithms, rows);

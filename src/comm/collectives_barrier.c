@@ -91,5 +91,6 @@ static const struct collective_algorithm rows[] = {
      recursive_doubling_cost},
     {"binomial", NULL, "Culler et al. 1993", NULL, NULL, binomial, binomial_cost},
     {"linear", NULL, "central counter", NULL, NULL, linear, linear_cost},
+    HARDWARE_ROW,
 };
 COLLECTIVE_TABLE(barrier_algorithms, rows);

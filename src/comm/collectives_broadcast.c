@@ -181,5 +181,6 @@ static const struct collective_algorithm rows[] = {
     {"pipeline", NULL, "a chain in segments of 8 KiB", NULL, NULL, pipeline, pipeline_cost},
     {"chain", NULL, "whole vectors down a chain", NULL, NULL, chain, linear_cost},
     {"linear", NULL, "the root to everybody", NULL, NULL, linear, linear_cost},
+    HARDWARE_ROW,
 };
 COLLECTIVE_TABLE(broadcast_algorithms, rows);

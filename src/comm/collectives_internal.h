@@ -122,6 +122,17 @@ int64_t even_part(const struct collective_call *k, const struct fold *f, int par
 int64_t binomial_part_bytes(int64_t count, int size, int64_t element);
 int64_t binomial_block_count(int size);
 
+/* The algorithm "hardware" of each collective that a network may do (collectives_hardware.c), and
+ * what it needs in words. */
+extern const char collective_hardware_needs[];
+bool needs_hardware(const struct collective_shape *s);
+int64_t hardware_scratch(const struct collective_shape *s, int rank);
+void hardware_run(const struct collective_call *k);
+void hardware_cost(const struct collective_shape *s, struct collective_cost *out);
+#define HARDWARE_ROW                                                                               \
+    {"hardware", collective_hardware_needs, "the machine's file", needs_hardware,                  \
+     hardware_scratch, hardware_run, hardware_cost}
+
 /* Conditions for tables. */
 bool needs_power_of_two(const struct collective_shape *s);
 bool needs_commutative(const struct collective_shape *s);

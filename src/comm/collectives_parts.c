@@ -180,6 +180,8 @@ struct collective_shape collective_shape(const struct collective_call *k)
     s.exclusive = k->exclusive;
     s.commutative = !k->op || k->op->commutative;
     s.idempotent = k->op && k->op->idempotent;
+    s.operation = k->op ? k->op->operation : COMM_OWN;
+    s.hardware = k->comm->hardware;
     s.irregular = k->counts || k->send_counts;
     if (!s.irregular || (k->kind != COLLECTIVE_ALLGATHER && k->kind != COLLECTIVE_REDUCE_SCATTER))
         return s;

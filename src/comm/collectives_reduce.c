@@ -191,5 +191,6 @@ static const struct collective_algorithm reduce_rows[] = {
      rabenseifner, rabenseifner_cost},
     {"chain", NULL, "down a chain of ranks", NULL, two_vectors, chain, chain_cost},
     {"linear", NULL, "everybody to the root", NULL, two_vectors, linear, linear_cost},
+    HARDWARE_ROW,
 };
 COLLECTIVE_TABLE(reduce_algorithms, reduce_rows);

@@ -53,6 +53,10 @@ static inline int comm_size(const struct comm *c) { return c->size; }
  * has it. */
 #define comm_barrier(c) (COMM_HERE(c), (c)->type->barrier((c)))
 
+/* comm_meet: a collective that the network itself does (c->hardware): return on all ranks when
+ * every rank has called and the network is done. Ranks that disagree about it end the run. */
+#define comm_meet(c, m) (COMM_HERE(c), (c)->type->meet((c), (m)))
+
 /* comm_work: advance this rank's clock by what `w` costs on the node, and count it. */
 static inline void comm_work(struct comm *c, const struct work *w) { c->type->work(c, w); }
 

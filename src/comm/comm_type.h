@@ -31,6 +31,29 @@ struct comm_request {
 
 struct comm_envelope;
 
+/* What an operation of a reduction asks of hardware, each more than the one before: nothing that it
+ * could do (a program's own function, products), bits and truths, sums and extremes of whole
+ * numbers, of floating-point numbers. */
+enum comm_operation { COMM_OWN, COMM_LOGICAL, COMM_INTEGER, COMM_REAL };
+
+/* What the network does by itself on all ranks of a machine. */
+struct comm_hardware {
+    unsigned kinds; /* bits 1 << enum collective_kind (collectives.h) */
+    enum comm_operation operations; /* the most that it can combine */
+    int64_t largest;                /* vector [B] */
+};
+
+/* One rank's part in a collective of the network (comm_meet). Kind, root and bytes are the same on
+ * every rank. */
+struct comm_meeting {
+    int kind, root;
+    int64_t bytes; /* of every rank's data */
+    void *data;    /* (bytes) this rank's: what it brings, then what it gets */
+    /* called once, when all ranks are there, with the data of all n in their order */
+    void (*act)(void *const *data, int n, void *context);
+    void *context;
+};
+
 /* Where the numbers of one output gather on this host; x NULL: nobody wants them. */
 struct comm_output {
     double *x; /* (n) */
@@ -45,6 +68,8 @@ struct comm_type {
                   struct comm_request *r);
     void (*wait)(struct comm *c, struct comm_request *r);
     void (*barrier)(struct comm *c);
+    /* comm_meet; NULL: there is no such network, whatever the machine's file says */
+    void (*meet)(struct comm *c, const struct comm_meeting *m);
     void (*work)(struct comm *c, const struct work *w);
     void (*stage)(struct comm *c, int stage);
     int64_t (*now_ps)(struct comm *c);
@@ -76,6 +101,7 @@ struct comm {
     const struct comm_type *type;
     int rank, size;
     int noutput;
+    const struct comm_hardware *hardware; /* of the network, NULL: none; borrowed */
     const struct comm_output
         *output;      /* (noutput) where comm_publish_here puts what is published; borrowed */
     const char *file; /* call site of the operation in progress, set by the macros below */

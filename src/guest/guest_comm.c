@@ -210,14 +210,14 @@ COMBINE(most_int64, int64_t, with[i] > into[i] ? with[i] : into[i])
 
 /* In the order of enum comm_op. */
 static const struct collective_op ops[] = {
-    {.combine = sum, .commutative = true},
+    {.combine = sum, .commutative = true, .operation = COMM_REAL},
     {.combine = product, .commutative = true},
-    {.combine = least, .commutative = true, .idempotent = true},
-    {.combine = most, .commutative = true, .idempotent = true},
-    {.combine = sum_int64, .commutative = true},
+    {.combine = least, .commutative = true, .idempotent = true, .operation = COMM_REAL},
+    {.combine = most, .commutative = true, .idempotent = true, .operation = COMM_REAL},
+    {.combine = sum_int64, .commutative = true, .operation = COMM_INTEGER},
     {.combine = product_int64, .commutative = true},
-    {.combine = least_int64, .commutative = true, .idempotent = true},
-    {.combine = most_int64, .commutative = true, .idempotent = true},
+    {.combine = least_int64, .commutative = true, .idempotent = true, .operation = COMM_INTEGER},
+    {.combine = most_int64, .commutative = true, .idempotent = true, .operation = COMM_INTEGER},
 };
 
 /* The program's numbers are part of its binary interface, the simulator's are not. */

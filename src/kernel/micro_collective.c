@@ -9,6 +9,7 @@
 #include "kernel/carve.h"
 #include "kernel/micro_program.h"
 #include "kernel/tags.h"
+#include "spec/collective_spec.h"
 
 enum { STAGE_COLLECTIVE, STAGE_SYNCHRONISE, NSTAGE };
 static const char *const stage_name[] = {"collective", "synchronise"};
@@ -50,13 +51,15 @@ struct collective_shape micro_collective_shape(const struct run_spec *spec)
     /* A negative root counts from the last rank, as in the settings. */
     s.root = (spec->kernel.root % s.size + s.size) % s.size;
     s.irregular = is_varied(spec);
+    s.operation = s.element == 1 ? COMM_INTEGER : COMM_REAL;
     return s;
 }
 
 /* An algorithm by name: an unknown one is refused with the list of names, one that does not fit
  * this number of ranks with what it needs. The error names what exists, because users type these
  * names. */
-static const struct collective_algorithm *named(const struct collective_shape *s, const char *name,
+static const struct collective_algorithm *named(const struct run_spec *spec,
+                                                const struct collective_shape *s, const char *name,
                                                 struct err *e)
 {
     char names[240];
@@ -66,6 +69,12 @@ static const struct collective_algorithm *named(const struct collective_shape *s
         err_set(e, ERR_CONFIG, "%s has no algorithm '%s'; expected auto, %s",
                 collective_name(s->kind), name, names);
     else if (!collective_applies(a, s)) {
+        char why[200];
+        if (strcmp(name, "hardware") == 0) {
+            collective_refusal(&spec->machine, s, why, (int)sizeof why);
+            err_set(e, ERR_CONFIG, "%s by 'hardware': %s", collective_name(s->kind), why);
+            return NULL;
+        }
         err_set(e, ERR_CONFIG, "%s by '%s' on %d processors: it needs %s", collective_name(s->kind),
                 name, s->size, a->needs);
         return NULL;
@@ -77,12 +86,14 @@ const struct collective_algorithm *micro_collective_algorithm(const struct run_s
                                                               struct err *e)
 {
     struct collective_rule rule[COLLECTIVE_MAX_RULES];
-    const struct collective_shape s = micro_collective_shape(spec);
+    const struct comm_hardware hardware = collective_hardware(&spec->machine);
+    struct collective_shape s = micro_collective_shape(spec);
     const char *name = spec->kernel.algorithm;
+    s.hardware = &hardware;
     /* An explicit name wins over the machine's rules; "auto" is the rules' choice. */
     char why[320];
     int n;
-    if (*name && strcmp(name, "auto") != 0) return named(&s, name, e);
+    if (*name && strcmp(name, "auto") != 0) return named(spec, &s, name, e);
     /* The machine's rules are text in its file: parsed here, once a run, and the choice is shared
      * by all ranks. */
     if (!collective_rules_parse(spec->machine.software.collectives, rule, &n, why,
@@ -130,6 +141,7 @@ static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
     s->algorithm = micro_collective_algorithm(job->spec, e);
     s->op =
         (struct collective_op){.combine = add, .context = &s->shape.element, .commutative = true};
+    s->op.operation = s->shape.operation;
     /* Read by all ranks; no rank changes it. */
     job->shared = s;
     return s->algorithm != NULL;

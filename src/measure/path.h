@@ -38,6 +38,8 @@
       "the machine's one kernel server, busy with messages of other ranks")                        \
     X(PATH_ENGINE_SEND, "sending engine", "copies that the sender's network engine makes")         \
     X(PATH_ENGINE_RECV, "receiving engine", "copies that the receiver's network engine makes")     \
+    X(PATH_COLLECTIVE, "collective",                                                               \
+      "a collective of the network, last arrival to the result everywhere")                        \
     X(PATH_POLL, "polling", "looking for messages that are not there yet")
 
 enum path_cause {

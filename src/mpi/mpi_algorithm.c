@@ -11,6 +11,9 @@ void mpi_collective_call(struct mpi_rank *r, struct collective_call *k, bool irr
     const struct mpi_setup *setup = r->world->setup;
     struct collective_shape s = collective_shape(k);
     s.irregular = s.irregular || irregular;
+    /* An operation in progress must not hold the rank itself, as the network's collectives do; all
+     * ranks call alike. */
+    if (r->running) s.hardware = NULL;
     const struct collective_algorithm *a = collective_choose(&s, setup->rule, setup->nrule);
     /* The algorithm says what it needs; the memory is taken here, because it must last as
      * long as the operation, which may be in progress on a stack of its own. */
@@ -43,10 +46,11 @@ void mpi_collective_allgather(struct mpi_rank *r, struct mpi_channel *k, unsigne
     mpi_collective_call(r, &call, false);
 }
 
-/* The machine's own barrier where it has one for all ranks. */
+/* The machine's own barrier where it has one for all ranks. It holds the rank, which a non-blocking
+ * one must not. */
 void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence)
 {
-    if (c->whole && r->world->setup->hardware_barrier) {
+    if (c->whole && r->world->setup->hardware_barrier && !r->running) {
         comm_barrier(r->comm);
         return;
     }

@@ -32,6 +32,10 @@ static void channel_wait(struct comm *c, struct comm_request *r)
 }
 
 static void channel_barrier(struct comm *c) { comm_barrier(world_of(c)); }
+static void channel_meet(struct comm *c, const struct comm_meeting *m)
+{
+    comm_meet(world_of(c), m);
+}
 static void channel_work(struct comm *c, const struct work *w) { comm_work(world_of(c), w); }
 static void channel_stage(struct comm *c, int stage) { comm_stage(world_of(c), stage); }
 static int64_t channel_now(struct comm *c) { return comm_now_ps(world_of(c)); }
@@ -45,6 +49,7 @@ static const struct comm_type channel_type = {
     .irecv = channel_irecv,
     .wait = channel_wait,
     .barrier = channel_barrier,
+    .meet = channel_meet,
     .work = channel_work,
     .stage = channel_stage,
     .now_ps = channel_now,

@@ -19,6 +19,8 @@ struct mpi_comm *mpi_comm_make(struct mpi_rank *r, struct mpi_group *g, int cont
     c->handler = like ? like->handler : NULL;
     mpi_errhandler_use(c->handler);
     mpi_channel_make(&c->channel, r, g, context, PLANE_COLLECTIVE);
+    /* The network's own collectives are of all ranks. */
+    if (c->whole) c->channel.comm.hardware = r->comm->hardware;
     return c;
 }
 

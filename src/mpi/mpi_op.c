@@ -230,6 +230,17 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
     mpi_give(x->self->world, copy);
 }
 
+/* What an operation asks of hardware that combines: nothing that is known has units for products,
+ * pairs or complex numbers. */
+static enum comm_operation hardware_operation(const struct mpi_op *op, const struct mpi_type *t)
+{
+    const intptr_t handle = FIRST_OP + (op - standard);
+    if (handle >= 0x28 && handle <= 0x32) return COMM_LOGICAL;
+    if (handle < 0x21 || handle > 0x23) return COMM_OWN;
+    if (t->class >= CLASS_INT8 && t->class <= CLASS_UINT64) return COMM_INTEGER;
+    return t->class == CLASS_FLOAT || t->class == CLASS_DOUBLE ? COMM_REAL : COMM_OWN;
+}
+
 /* mpi_reduction_make: the operation on elements of the type, as collectives.h wants it. */
 int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_op *op,
                        struct mpi_type *t, struct mpi_comm *c)
@@ -245,6 +256,7 @@ int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_o
     if (!is_standard(op)) return MPI_SUCCESS;
     /* A built-in operation works on basic types alone (section 6.9.2); a type made by the
      * program has no class. */
+    x->work.operation = hardware_operation(op, t);
     x->work.combine = t->class == CLASS_NONE ? NULL : combine[op - standard][t->class];
     if (x->work.combine) return MPI_SUCCESS;
     return mpi_error(r, c, MPI_ERR_OP, "%s is not defined on %s", op->name,

@@ -128,6 +128,7 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     bool fine = expand_points(&x, n);
     identity_destroy(x.identity);
     p->search = s->search;
+    p->answer = s->answer;
     p->memory->scenario = s;
     p->memory->starts = x.starts;
     return fine;

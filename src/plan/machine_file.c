@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "plan/data_dir.h"
+#include "spec/collective_spec.h"
 #include "spec/spec_fields.h"
 
 /* More bases than this are a mistake; figures of one machine. */
@@ -362,6 +363,9 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
             return err_set_at(e, ERR_CONFIG, file, line,
                               "machine %s: topology.links names router %d; there are %d",
                               m->name, t->link[i][t->link[i][0] < t->dims[0]], t->dims[0]);
+    char why[320];
+    if (!collective_rules_fit(m, why, (int)sizeof why))
+        return err_set_at(e, ERR_CONFIG, file, line, "%s", why);
     if (topology_has(t->family, TOPOLOGY_LISTED) && t->nlink == 0 && t->dims[0] > 1)
         return err_set_at(e, ERR_CONFIG, file, line,
                           "machine %s: family 'graph' needs topology.links", m->name);

@@ -45,6 +45,18 @@ struct plan_search {
     int line;
 };
 
+/* What its runs are compared by, for the sentence that answers the question (answer_file.h). */
+struct plan_answer {
+    const char *of, *over; /* full keys, or "variant"; over NULL: one choice */
+    const char *of_word, *over_word; /* as the file writes them */
+    const struct expression *goal;
+    bool greatest;
+    const char *against; /* value of `of`, NULL: none */
+    double within;       /* share, 0: not asked */
+    const char *file;
+    int line;
+};
+
 struct plan {
     struct arena *arena;  /* owned; everything below lives in it */
     char name[64];        /* stem of the scenario file */
@@ -55,6 +67,7 @@ struct plan {
     /* (nrun) number of the point in the product of the axes, before conditions */
     int64_t *point;
     const struct plan_search *search; /* what is optimised, NULL: nothing */
+    const struct plan_answer *answer; /* what answers the question, NULL: the table */
     /* (nrun) of a search: runs of one group differ in what is searched; numbered from 0 */
     int *group;
     int ngroup;

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "plan/answer_file.h"
 #include "plan/data_dir.h"
 #include "plan/jobs_file.h"
 #include "plan/program_file.h"
@@ -222,6 +223,13 @@ static bool read_combinations(struct top *t, const struct node *n)
     return jobs_file_combine(t->scenario, n, t->arena, t->err);
 }
 
+/* What the runs are compared by when they are there. Nothing of the plan depends on it, so that
+ * runs that are stored already answer it, too. */
+static bool read_answer(struct top *t, const struct node *n)
+{
+    return answer_file_read(t->scenario, n, t->arena, t->err);
+}
+
 static bool read_sweep(struct top *t, const struct node *n)
 {
     if (n->kind != NODE_MAP) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
@@ -246,6 +254,7 @@ static const struct top_key {
     {"figures", read_figures},        {"only", read_only},         {"when", read_only},
     {"sweep", read_sweep},            {"optimise", read_search},
     {"jobs", read_jobs},              {"combinations", read_combinations},
+    {"answer", read_answer},
 };
 enum { NTOP = sizeof top_keys / sizeof *top_keys };
 
@@ -300,7 +309,8 @@ static bool is_sampled(const struct axis *x, const char *key)
 static bool check_axes(const struct scenario *s, struct err *e)
 {
     /* First what is searched: its middle is a setting for all runs, too. */
-    if (!search_file_check(s, e) || !jobs_file_check(s, e)) return false;
+    if (!search_file_check(s, e) || !jobs_file_check(s, e) || !answer_file_check(s, e))
+        return false;
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->base.n; j++) {
             const struct setting *set = &s->base.at[j];

@@ -36,6 +36,7 @@ struct scenario {
     struct condition condition[SCENARIO_MAX_CONDITIONS]; /* points that fail one are left out */
     struct plan_search *search; /* NULL: nothing is optimised */
     struct scenario_jobs *jobs; /* what shares the machine (jobs_file.h); NULL: one program */
+    struct plan_answer *answer; /* NULL: no sentence is wanted */
     int nfigure;
     const char **figure;
 };

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "run/rank_stack.h"
+#include "spec/collective_spec.h"
 #include "vp/world.h"
 
 /* Fewer ranks on each thread than this, and messages between threads cost more than a thread saves
@@ -58,6 +59,9 @@ static struct world_load load_of(const struct program_run *r, int64_t largest)
                                .name = r->type->name,
                                .stack_bytes = r->rank->stack_bytes,
                                .timed = r->rank->timed,
+                               /* The vectors of all ranks are combined in one memory, so that such
+                                * a run stays on one thread. */
+                               .meets = collective_meets(&r->spec),
                                .foreign = r->rank->foreign,
                                .no_synchronous = r->rank->no_synchronous,
                                .leftovers = r->rank->leftovers};

@@ -2,6 +2,8 @@
  * the field table names. */
 #include "spec/machine_idle.h"
 
+#include "spec/collective_spec.h"
+
 #include <stddef.h>
 
 #include "spec/run_spec.h"
@@ -283,4 +285,13 @@ const char *machine_idle_unless_roofline(const struct run_spec *r)
     return machine_dormant_unless_roofline(&r->machine)
                ? "node.model 'rates' knows neither caches nor memories"
                : NULL;
+}
+
+/* Whether people's own programs ask for it is not known before they run: what they may name acts.
+ * Of built-in ones it is known, by the name of the algorithm or by the machine's rules. */
+const char *machine_idle_without_hardware(const struct run_spec *r)
+{
+    if (r->machine.network.collective.kinds[0] == '\0') return "network.collective.kinds is empty";
+    return r->kernel.own || collective_meets(r) ? NULL
+                                                : "no collective is done by 'hardware' here";
 }

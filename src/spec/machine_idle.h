@@ -51,5 +51,6 @@ const char *machine_idle_unless_roofline(const struct run_spec *r);
 /* machine_dormant_unless_roofline: whether the struct machine_spec at `machine` knows no caches
  * (field.h). */
 bool machine_dormant_unless_roofline(const void *machine);
+const char *machine_idle_without_hardware(const struct run_spec *r);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "base/size.h"
 #include "comm/collective_rules.h"
+#include "spec/collective_spec.h"
 #include "spec/machine_idle.h"
 #include "spec/spec_fields.h"
 
@@ -31,11 +32,12 @@ static const char *const levels[] = {
     [LEVEL_AUTO_TOLERANCE] = "auto-tolerance", NULL};
 static const char *const arbitrations[] = {"round-robin", "first-come", NULL};
 static const char *const rules[] = {
-#define X(constant, word, chance) [constant] = word,
+#define X(constant, word, chance, doc) [constant] = word,
     ROUTING_LIST(X)
 #undef X
     NULL};
 static const char *const allocators[] = {"select", "islip", NULL};
+static const char *const operations[] = {"logical", "integer", "real", NULL};
 static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake",  "gray", "random",
                                          "list",   "groups", NULL};
@@ -61,6 +63,10 @@ static const char *const node_models[] = {"rates", "roofline", NULL};
 #define PRICE(member)                                                                              \
     .kind = FIELD_REAL, AT(price.member), .min = 0, .max = 1e12, .fallback = "0",            \
     .label = true, .idle = machine_idle_in_runs
+
+/* A setting of the network's own collectives. */
+#define HARDWARE(member)                                                                           \
+    AT(network.collective.member), .min = 0, .idle = machine_idle_without_hardware
 
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
@@ -135,8 +141,7 @@ static const struct field fields[] = {
      .idle = machine_idle_unless_seeded, .doc = "random-regular: draws another graph"},
     /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink),
-     .min = 0,
-     .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_graph,
+     .min = 0, .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_graph,
      .doc = "graph: router pairs, each "
                                                                          "connected in both "
                                                                          "directions"},
@@ -157,8 +162,7 @@ static const struct field fields[] = {
      .min = 1, .max = 1e18,
      .doc = "rate of additions and multiplications in small dense double-precision code"},
     {.key = "node.serial_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.serial_rate),
-     .min = 0,
-     .max = 1e18, .fallback = "0 flop/s",
+     .min = 0, .max = 1e18, .fallback = "0 flop/s",
      .doc = "the same for the serial codes, the baselines of the speedup; 0: node.flop_rate"},
     {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1,
      .max = 1e13,
@@ -173,8 +177,7 @@ static const struct field fields[] = {
      .max = 1e6,
      .fallback = "0 cycles", .doc = "time of one sine or cosine"},
     {.key = "node.instruction", .kind = FIELD_REAL, .unit = UNIT_CYCLES,
-     AT(node.instruction_cycles), .min = 0,
-     .max = 1e6, .fallback = "0 cycles",
+     AT(node.instruction_cycles), .min = 0, .max = 1e6, .fallback = "0 cycles",
      .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
             "node.flop_rate tells that several are issued at once"},
     /* Where the first is given, the five hold together for blocks of compiled code, in the place of
@@ -201,8 +204,7 @@ static const struct field fields[] = {
      .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},
     {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
-     AT(node.copy_bandwidth), .min = 0,
-     .max = 1e15, .fallback = "unlimited", .zero = "unlimited",
+     AT(node.copy_bandwidth), .min = 0, .max = 1e15, .fallback = "unlimited", .zero = "unlimited",
      .doc = "rate of memory copies by the program (packing)"},
 
     /* Caches and memory (docs/nodes.md), the nearest first. */
@@ -270,8 +272,7 @@ static const struct field fields[] = {
      .min = 0, .max = 1e15, .fallback = "0 B/s",
      .doc = "rate from network into node, 0: that of a link"},
     {.key = "network.hop_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.hop_latency),
-     .min = 0,
-     .max = 1, .fallback = "0 s",
+     .min = 0, .max = 1, .fallback = "0 s",
      .doc = "time of the head of a message per router: router and wire"},
     {.key = "network.end_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.end_latency),
      .min = 0,
@@ -293,8 +294,7 @@ static const struct field fields[] = {
      .min = 1, .max = 1 << 20,
      .fallback = "8 B", .doc = "unit of flow control; sizes on the wire are whole flits"},
     {.key = "network.packet", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.packet_bytes),
-     .min = 0,
-     .max = 1 << 30, .fallback = "0 B",
+     .min = 0, .max = 1 << 30, .fallback = "0 B",
      .doc = "largest payload of a packet, 0 B: a message is one packet"},
     {.key = "network.header", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.header_bytes),
      .min = 0,
@@ -322,6 +322,25 @@ static const struct field fields[] = {
     {.key = "network.allocator_iterations", .kind = FIELD_INT, AT(network.allocator_iterations),
      .min = 1, .max = 16, .fallback = "3", .idle = machine_idle_without_allocators,
      .doc = "rounds of offers in which channels and the switch of a router are given"},
+    /* What the network does by itself: the algorithm "hardware" (docs/collectives.md). */
+    {.key = "network.collective.kinds", .kind = FIELD_TEXT, HARDWARE(kinds), .capacity = 64,
+     .fallback = "", .valid = collective_kinds_valid,
+     .doc = "collectives that the network does by itself, for the algorithm 'hardware': some of "
+            "broadcast, reduce, allreduce; barriers: software.barrier.kind"},
+    {.key = "network.collective.operations", .kind = FIELD_CHOICE, HARDWARE(operations),
+     .choice = operations, .fallback = "real",
+     .doc = "what it combines: bits and truths; also whole numbers; also floating-point numbers"},
+    {.key = "network.collective.largest", .kind = FIELD_INT64, .unit = UNIT_BYTES,
+     HARDWARE(largest), .max = 1e15, .fallback = "0 B", .doc = "longest vector, 0 B: any"},
+    {.key = "network.collective.radix", .kind = FIELD_INT, HARDWARE(radix), .max = 1 << 20,
+     .fallback = "0", .doc = "children of each switch in a tree of its own; 0: over the links"},
+    {.key = "network.collective.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, HARDWARE(latency),
+     .max = 10, .fallback = "0 s", .doc = "beside links and bytes, from the last rank's entry"},
+    {.key = "network.collective.per_link", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     HARDWARE(hop_latency), .max = 1, .fallback = "0 s", .doc = "each link of the tree, each way"},
+    {.key = "network.collective.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     HARDWARE(bandwidth), .max = 1e15, .fallback = "0 B/s",
+     .doc = "rate of the vector through the tree, 0: that of a link"},
 
     /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
      * with sizes that change the protocol. */
@@ -374,8 +393,7 @@ static const struct field fields[] = {
      .max = 1e15, .fallback = "unlimited", .idle = machine_idle_with_segments,
      .doc = "longer messages use the rendezvous protocol (handshake first)"},
     {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
-     AT(software.eager_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B",
+     AT(software.eager_copy), .min = 0, .max = 1, .fallback = "0 s/B",
      .idle = machine_idle_with_segments,
      .doc = "receiver's time per byte of an eager message that is not short, added to "
             "software.recv.copy"},
@@ -400,8 +418,7 @@ static const struct field fields[] = {
      .fallback = "false",
      .doc = "both ends of every message pass one server of the whole machine (TCP loopback)"},
     {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time),
-     .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_server,
+     .min = 0, .max = 10, .fallback = "0 s", .idle = machine_idle_unless_server,
      .doc = "service time of this server per message end"},
     {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
      AT(software.kernel_per_byte),
@@ -456,8 +473,7 @@ static const struct field fields[] = {
      .idle = machine_idle_unless_random,
      .doc = "seed of the random order"},
     {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist),
-     .min = 0,
-     .max = 1 << 30, .fallback = "[]", .idle = machine_idle_unless_list,
+     .min = 0, .max = 1 << 30, .fallback = "[]", .idle = machine_idle_unless_list,
      .doc = "processor of each rank"},
 
     /* What other jobs and the operating system take; seeded by the run. */

@@ -9,10 +9,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "spec/level_list.h"
+#include "spec/network_spec.h"
 #include "spec/node_spec.h"
 #include "spec/price_spec.h"
-#include "spec/routing_list.h"
 #include "spec/software_spec.h"
 #include "spec/topology_list.h"
 
@@ -64,43 +63,6 @@ struct topology_spec {
     int *failed_router;    /* (nfailed_router) that do not work, borrowed */
     int nlink_weight;  /* graph: 0 or nlink */
     int *link_weight;  /* graph: what a route over each link counts, borrowed */
-};
-
-enum network_level {
-#define X(constant, word, stem, cost, fineness) constant,
-    LEVEL_LIST(X)
-#undef X
-        LEVEL_AUTO_TOLERANCE /* the cheapest whose measured error is within `tolerance`; replaced by
-                                it before a run */
-};
-
-enum { LEVELS = LEVEL_AUTO_TOLERANCE }; /* levels that a network can be simulated at */
-
-enum arbitration { ARBITRATION_ROUND_ROBIN, ARBITRATION_FIRST_COME };
-
-/* The wire. Zero-load time of a message of b bytes over R = links + 1 resources after injection:
- *   R hop_latency + serialisation(b) + end_latency, counted from its injection. */
-struct network_spec {
-    enum network_level level;
-    double tolerance;           /* auto-tolerance: relative error of the makespan that may be */
-    double link_bandwidth;      /* payload rate of one link and direction [B/s] */
-    double injection_bandwidth; /* node into network [B/s]; 0: the link's */
-    double ejection_bandwidth;  /* network into node [B/s]; 0: the link's */
-    double hop_latency;         /* router and wire, head of a message, per resource [s] (tau) */
-    double end_latency;         /* network interface, entry and exit together [s] */
-    double credit_latency;      /* a freed buffer to the sender upstream [s] (c) */
-    double routing_latency; /* part of hop_latency: a head's route at the front of a buffer [s] */
-    double vc_allocation_latency; /* part of hop_latency: a virtual channel for it, once one is free
-                                     [s] */
-    int64_t flit_bytes;         /* [B] */
-    int64_t packet_bytes;       /* largest payload of a packet [B]; 0: a message is one packet */
-    int64_t header_bytes;       /* added to each packet on the wire [B] */
-    int virtual_channels;       /* per link and direction, all classes together */
-    int buffer_flits;           /* per virtual channel [flits] */
-    enum arbitration arbitration;
-    enum routing_rule routing;      /* which of several routes a packet takes */
-    enum vc_allocator vc_allocator; /* with routing: how heads that ask get channels */
-    int allocator_iterations;       /* with routing: rounds in which a router gives them */
 };
 
 enum placement_kind { PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM,

@@ -9,11 +9,23 @@
 const char *routing_rule_name(enum routing_rule rule)
 {
     static const char *const name[] = {
-#define X(constant, word, chance) [constant] = word,
+#define X(constant, word, chance, doc) [constant] = word,
         ROUTING_LIST(X)
 #undef X
     };
     return name[rule];
+}
+
+/* As `explain` says it: a clause without an end, so that a sentence can go on behind it. The rules
+ * in full, with what keeps each free of deadlock, are in docs/network.md. */
+const char *routing_rule_doc(enum routing_rule rule)
+{
+    static const char *const words[] = {
+#define X(constant, word, chance, doc) [constant] = doc,
+        ROUTING_LIST(X)
+#undef X
+    };
+    return words[rule];
 }
 
 /* Chance or load: repetitions of a run with other seeds may then differ. Loads alone would be the
@@ -21,7 +33,7 @@ const char *routing_rule_name(enum routing_rule rule)
 bool routing_rule_chance(enum routing_rule rule)
 {
     static const bool by[] = {
-#define X(constant, word, chance) [constant] = chance,
+#define X(constant, word, chance, doc) [constant] = chance,
         ROUTING_LIST(X)
 #undef X
     };

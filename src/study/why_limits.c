@@ -14,6 +14,7 @@ static void no_latency(struct machine_spec *m)
     memset(m->topology.dim_latency, 0, sizeof m->topology.dim_latency);
     m->network.vc_allocation_latency = m->network.credit_latency = 0;
     m->software.rendezvous_latency = m->software.shared_latency = 0;
+    m->network.collective.latency = m->network.collective.hop_latency = 0;
     for (int i = 0; i < m->software.nsegment; i++)
         m->software.segment[i].latency = m->software.segment[i].rendezvous_latency = 0;
 }
@@ -38,6 +39,7 @@ static void no_bytes(struct machine_spec *m)
     /* a latency is many such flits, which a buffer has to hold */
     m->network.buffer_flits = 1 << 24;
     m->network.injection_bandwidth = m->network.ejection_bandwidth = 0;
+    m->network.collective.bandwidth = 0; /* that of a link */
     memset(m->topology.dim_bandwidth, 0, sizeof m->topology.dim_bandwidth);
     m->software.gap_per_byte = 0;
     for (int i = 0; i < m->software.nsegment; i++) m->software.segment[i].gap_per_byte = 0;

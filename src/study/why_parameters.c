@@ -14,6 +14,7 @@
 #include "machine/node_use.h"
 #include "study/why.h"
 #include "vp/cost.h"
+#include "vp/meeting.h"
 
 enum parameter {
     FLOP_RATE,
@@ -51,6 +52,9 @@ enum parameter {
     GAP_PER_BYTE,
     RENDEZVOUS,
     BARRIER,
+    COLLECTIVE_LATENCY,
+    COLLECTIVE_HOP,
+    COLLECTIVE_BANDWIDTH,
     PARAMETERS
 };
 
@@ -108,6 +112,12 @@ static const struct row {
     [RENDEZVOUS] = {"machine.software.rendezvous.latency", AT(software.rendezvous_latency),
                     SEGMENT(rendezvous_latency), false},
     [BARRIER] = {"machine.software.barrier.time", AT(software.barrier_time), NONE, false},
+    [COLLECTIVE_LATENCY] = {"machine.network.collective.latency", AT(network.collective.latency),
+                            NONE, false},
+    [COLLECTIVE_HOP] = {"machine.network.collective.per_link",
+                        AT(network.collective.hop_latency), NONE, false},
+    [COLLECTIVE_BANDWIDTH] = {"machine.network.collective.bandwidth",
+                              AT(network.collective.bandwidth), NONE, true},
 #undef AT
 #undef SEGMENT
 #undef NONE
@@ -239,9 +249,28 @@ static enum parameter only(const struct machine_spec *m, enum path_cause cause)
     }
 }
 
+/* A collective of the network has three: a constant, the bytes, and the links with all the rest. */
+static void add_collective(const struct machine_spec *m, const struct path_step *s, double *time)
+{
+    /* A network without the constant gives the time of the bytes alone.
+     * They may be those of a link, where the collective has no rate of its own: that is what the
+     * parameter link.bandwidth then stands for. */
+    struct network_spec bytes = m->network;
+    bytes.collective.latency = 0;
+    const double vector = (double)meeting_time(&bytes, 0, s->count),
+                 constant = (double)meeting_time(&m->network, 0, 0);
+    time[COLLECTIVE_LATENCY] += constant;
+    time[m->network.collective.bandwidth > 0 ? COLLECTIVE_BANDWIDTH : LINK] += vector;
+    time[COLLECTIVE_HOP] += (double)(s->end_ps - s->begin_ps) - constant - vector;
+}
+
 /* Add the steps that are one parameter's alone; of the end latency a part may be the segment's. */
 static void add_whole(const struct machine_spec *m, const struct path_step *s, double *time)
 {
+    if (s->cause == PATH_COLLECTIVE) {
+        add_collective(m, s, time);
+        return;
+    }
     const enum parameter p = only(m, s->cause);
     double whole = (double)(s->end_ps - s->begin_ps);
     if (p == PARAMETERS) return;

@@ -9,6 +9,7 @@
 #include "base/picoseconds.h"
 #include "vp/explain.h"
 #include "vp/matching.h"
+#include "vp/meeting.h"
 
 /* -1 where no single rank could end the wait. */
 static int peer_of(const struct vp *v)
@@ -53,6 +54,8 @@ static int describe(const struct vp *v, char *s, int size)
                         "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
                         v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line,
                         v->world->barrier_count, v->world->nrank);
+    case WAITING_MEETING:
+        return meeting_describe(v, s, size);
     case WAITING_ANY: /* for a receive that nothing has come for, if there is one */
         r = v->posted;
         if (r) describe_receive(r, receive, sizeof receive);

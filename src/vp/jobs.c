@@ -18,6 +18,7 @@
 #include "vp/offload.h"
 #include "vp/team.h"
 #include "vp/world_parts.h"
+#include "vp/meeting.h"
 
 struct jobs {
     int n;
@@ -110,6 +111,8 @@ static void make_world(struct jobs *j, int i, int first)
     world_name_stages(b->out, w->nstage, b->load->stage_name);
     world_make_tables(w);
     make_costs(j, i, w);
+    /* The network does the collectives of each job by itself. */
+    meeting_create(w);
 }
 
 /* From the outside in, as for one job. */

@@ -1,6 +1,7 @@
 /* ranks.c - a world's ranks: made, and let go on one after the other. */
 #include "base/digest.h"
 #include "vp/matching.h"
+#include "vp/meeting.h"
 #include "vp/team.h"
 
 /* The clock stops with the program's last call. */
@@ -23,6 +24,7 @@ void world_make_ranks(struct world *w, uint64_t seed)
                                 .rank = i,
                                 .size = w->nrank,
                                 .noutput = w->load->noutput,
+                                .hardware = meeting_hardware(w),
                                 .output = w->load->output};
         v->world = w;
         /* Rows belong to the result and outlive the ranks. */

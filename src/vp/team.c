@@ -277,6 +277,7 @@ const char *world_alone(const struct machine_spec *m, const struct world_load *l
                         const struct record_spec *record)
 {
     if (load->foreign) return "the program is not a built-in one";
+    if (load->meets) return "the network does a collective of all ranks";
     if (load->timed) return "receives from anybody and tests depend on time";
     if (m->network.level != LEVEL_LOGGP || topology_has(m->topology.family, TOPOLOGY_SHARED))
         return "messages wait for each other at links (network.level loggp has none)";

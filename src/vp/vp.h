@@ -32,7 +32,7 @@
 enum { LANE_ARRIVAL = NET_LANE_START - 5, LANE_POST, LANE_POLL, LANE_SERVER, LANE_BACKGROUND };
 
 enum waiting_for {
-    WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER,
+    WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_MEETING,
     WAITING_SERVER, WAITING_ANY, WAITING_POLL
 };
 
@@ -79,6 +79,7 @@ struct world {
     struct software_cost software;
     struct node_cost node_cost;
     bool shared_channel, eager_only, noisy;
+    struct meeting *meeting; /* collectives of the network (meeting.h), NULL: it does none */
     bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
     bool broken; /* a process of the job does not answer */
     /* by its ranks, where processes share the run (shared.h); NULL: not kept */
@@ -94,8 +95,7 @@ struct world {
     sim_ps start; /* when its ranks begin: the zero of all that is told of them */
     int first, nown;           /* its ranks: first .. first + nown - 1 */
     void (*arrived)(struct message *m);    /* what the end of a message's trip means */
-    /* of a share: v enters the machine's barrier; NULL: one thread */
-    void (*share_barrier)(struct vp *v);
+    void (*share_barrier)(struct vp *v);   /* v of a share enters the machine's; NULL: one thread */
 
     struct path_log *path; /* what binds (path.h), NULL unless recorded; owned */
     /* what was computed so far, as record->balance has it; NULL: that does not act (balance.h) */

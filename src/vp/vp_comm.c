@@ -12,6 +12,7 @@
 #include "vp/shared.h"
 #include "vp/matching.h"
 #include "vp/offload.h"
+#include "vp/meeting.h"
 #include "vp/balance.h"
 #include "vp/path.h"
 #include "vp/vp.h"
@@ -378,6 +379,7 @@ const struct comm_type vp_comm_type = {
     .irecv = vp_irecv,
     .wait = vp_wait,
     .barrier = vp_barrier,
+    .meet = vp_meet,
     .work = vp_work,
     .stage = vp_stage,
     .now_ps = vp_now,

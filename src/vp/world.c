@@ -20,6 +20,7 @@
 #include "vp/shared.h"
 #include "vp/matching.h"
 #include "vp/offload.h"
+#include "vp/meeting.h"
 #include "vp/path.h"
 #include "vp/team.h"
 #include "vp/vp.h"
@@ -257,6 +258,7 @@ static bool build(struct world *w, struct err *e)
     w->software = software_cost_used(m, &use);
     w->result->working_set = w->load->working_set;
     if (!world_make_network(w, w->record->links, e)) return false;
+    meeting_create(w);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
     if (w->record->path && w->record->slack) path_keep_losers(w->path);

@@ -40,6 +40,7 @@ struct world_load {
     bool timed;
     /* none of its sends is synchronous: as largest_message, a promise that saves events */
     bool no_synchronous;
+    bool meets;     /* a built-in program that may call collectives of the network (comm_meet) */
     bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
     /* of a foreign program: messages that nobody has received at its end are no failure */
     bool leftovers;

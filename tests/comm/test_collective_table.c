@@ -102,7 +102,8 @@ static void check_row(char *cell[CELLS], const char *row)
     assert_string_equal(cell[2], a->needs ? a->needs : "-");
     for (int P = 2; P <= 40; P++) {
         const int64_t m = kind == COLLECTIVE_BARRIER ? 0 : (int64_t)1024 * P * 32;
-        const struct collective_shape s = {kind, P, 0, m, m * P, 8, false, true, true, false};
+        const struct collective_shape s = {kind, P, 0, m, m * P, 8, false, true, true, false,
+                                            COMM_OWN, NULL};
         const struct letters l = letters_of(P, m, 8 * m);
         struct collective_cost c;
         if (!collective_applies(a, &s)) continue;

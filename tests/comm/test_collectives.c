@@ -56,7 +56,9 @@ static void largest(void *into, const void *with, bool before, int64_t n, void *
 }
 
 static const struct collective_op operation[] = {
-    {sum, NULL, true, false}, {compose, NULL, false, false}, {largest, NULL, true, true}};
+    {sum, NULL, true, false, COMM_OWN},
+    {compose, NULL, false, false, COMM_OWN},
+    {largest, NULL, true, true, COMM_OWN}};
 
 /* One call on all ranks. Element i of the block that rank r has for rank d is made from (r, d,
  * i). */
@@ -277,7 +279,7 @@ static void all_algorithms(enum collective_kind kind, int P, int64_t count, int 
             struct trial t = {.algorithm = &row[i], .op = &operation[op]};
             t.shape = (struct collective_shape){
                 kind,  P,     root,  count,    count * P, sizeof(struct pair),
-                false, false, false, exclusive};
+                false, false, false, exclusive, COMM_OWN, NULL};
             t.shape.commutative = t.op->commutative;
             t.shape.idempotent = t.op->idempotent;
             t.in_place = kind == COLLECTIVE_ALLREDUCE && (count + root) % 2;
@@ -313,7 +315,7 @@ static void irregular_trial(enum collective_kind kind, int P, struct random *s)
     struct trial t = {.matrix = matrix, .places = places, .gap = 1};
     t.shape = (struct collective_shape){
         kind,  P,    (int)random_below(s, (uint64_t)P), 9, 0, sizeof(struct pair), true, true,
-        false, false};
+        false, false, COMM_OWN, NULL};
     int64_t at = 0;
     bool gaps = kind == COLLECTIVE_GATHER || kind == COLLECTIVE_SCATTER || random_below(s, 2);
     for (int r = 0; r < P; r++) {
@@ -367,7 +369,8 @@ static void tables_are_whole(void **state)
 
 static const char *chosen(enum collective_kind kind, int P, int64_t count, bool commutative)
 {
-    struct collective_shape s = {kind, P, 0, count, count * P, 1, false, commutative, false, false};
+    struct collective_shape s = {kind, P, 0, count, count * P, 1, false, commutative, false, false,
+                                 COMM_OWN, NULL};
     return collective_choose(&s, NULL, 0)->name;
 }
 
@@ -409,7 +412,7 @@ static void rules_come_before_the_default(void **state)
     const struct collective_rule rule[] = {{COLLECTIVE_ALLREDUCE, trees, 0, 0},
                                            {COLLECTIVE_ALLREDUCE, ring, 1000, 16}};
     struct collective_shape s = {
-        COLLECTIVE_ALLREDUCE, 16, 0, 1000, 16000, 1, false, true, false, false};
+        COLLECTIVE_ALLREDUCE, 16, 0, 1000, 16000, 1, false, true, false, false, COMM_OWN, NULL};
     assert_ptr_equal(collective_choose(&s, rule, 2), ring);
     s.count = 999;
     assert_ptr_equal(collective_choose(&s, rule, 2), trees);

@@ -225,6 +225,7 @@ static bool other_value(const struct field *f, const char *full, const void *bas
                         strcmp(full, "kernel.name") == 0                    ? "forward"
                         : strcmp(full, "kernel.algorithm") == 0             ? "ring"
                         : strcmp(full, "machine.software.collectives") == 0 ? "allreduce ring"
+                        : strcmp(full, "machine.network.collective.kinds") == 0 ? "reduce"
                                                                             : "other"),
                true;
     case FIELD_SEGMENTS:

@@ -41,6 +41,7 @@ static void random_value(const struct field *f, struct random *r, char *text, si
         if (strcmp(f->key, "software.collectives") == 0)
             snprintf(text, size, "reduce chain; scan linear from %llu B",
                      (unsigned long long)random_below(r, 100000));
+        else if (strcmp(f->key, "network.collective.kinds") == 0) snprintf(text, size, "reduce");
         else if (f->valid) snprintf(text, size, "ring");
         else snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000));
         break;
