@@ -29,14 +29,17 @@ static bool add_hash(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-/* What cannot be asked is not said: a figure is drawn all the same. */
-static void known_errors(struct store *s, const char *run_ids, struct text *out)
+/* What a database cannot be asked is not said: a figure is drawn all the same. Lack of memory is no
+ * answer of a database. */
+static bool known_errors(struct store *s, const char *run_ids, struct text *out, struct err *e)
 {
-    struct err ignored;
+    struct err why;
     struct how_sure h;
-    err_clear(&ignored);
-    if (how_sure_read(s, run_ids, &h, &ignored)) how_sure_short(&h, out);
+    err_clear(&why);
+    if (how_sure_read(s, run_ids, &h, &why)) how_sure_short(&h, out);
     if (out->length > 0) text_add(out, "; ");
+    if (why.kind == ERR_INTERNAL) *e = why;
+    return why.kind != ERR_INTERNAL;
 }
 
 /* The commit that draws, unless its name is there already. */
@@ -74,7 +77,7 @@ bool stamp_make(struct store *s, const char *run_ids, struct text *out, struct e
                            "SELECT config_hash FROM run WHERE id IN (SELECT value FROM "
                            "json_each(?1)) ORDER BY config_hash, seed, rep",
                            1, ids, add_hash, &hashes, e);
-    if (ok) known_errors(s, run_ids, out);
+    ok = ok && known_errors(s, run_ids, out, e);
     /* One run is named by its own hash, several by a hash of all their hashes. */
     const size_t nrun = hashes.length / 64;
     if (ok && nrun == 1 && sources.s)
