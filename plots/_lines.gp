@@ -57,6 +57,7 @@ do for [format in formats] {
     set yrange [(vlog > 0 ? pad_low(vmin, vlog) : (vmin > 0 ? 0 : vmin - 0.05*(vmax - vmin))):(vlog > 0 ? pad_high(vmax, vlog) : vmax + 0.05*(vmax - vmin) + (vmax == vmin))]
     set format x "%.6g"; set format y "%.6g"
     set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format); set ytics nomirror out scale 0.6 autofreq
+    if (xlog == 2 && xmax >= 1e5) { set format x "%.0b%B" } # 512, 8Ki, 2Mi: tics are powers of two
     if (xlog > 0 && x_number) { # so many labels as have room
         apart = xlog**ceil(log(xmax/xmin)/log(xlog)/(columns == 1 ? 9.0 : 4.0))
         if (apart > xlog) { set xtics xlog**floor(log(xmin)/log(xlog)),apart }

@@ -104,9 +104,10 @@ bool document_integer(const struct node *map, const char *key, const char *path,
 {
     /* a fraction or an overflow is refused with the number itself, as it was read */
     double x;
-    if (!document_number(map, key, path, &x, e)) return false;
+    const struct node *at = document_find(map, key);
+    if (!document_number(map, key, path, &x, e) || at == NULL) return false;
     if (x < lo || x > hi || x != floor(x))
-        return err_set_at(e, ERR_DATA, path, document_find(map, key)->line,
+        return err_set_at(e, ERR_DATA, path, at->line,
                           "'%s' must be an integer from %d to %d, not %g", key, lo, hi, x);
     *i = (int)x;
     return true;

@@ -6,6 +6,7 @@
  * printed again (identity.h). */
 #include <string.h>
 
+#include "base/check.h"
 #include "base/digest.h"
 #include "base/text.h"
 #include "plan/condition.h"
@@ -135,6 +136,7 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
     const struct setting *ranks = last_of(x, is_ranks);
     const struct machine_spec *m = &run->machine;
     int64_t n = machine_spec_processors(m);
+    CHECK(ranks != NULL); /* a plan without them is refused before its points are made */
     /* `ranks: n`: the place to change is that of n. */
     if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL)
         ranks = last_of(x, is_bodies);

@@ -38,7 +38,7 @@ static int by_value(const void *a, const void *b)
 static bool judge(struct code_rates *r, const double *price, code_time_fn *time, void *context,
                   double *squares, struct err *e)
 {
-    double off[CODE_RATES_MOST];
+    double off[CODE_RATES_MOST] = {0};
     *squares = r->residual = 0;
     for (int i = 0; i < r->n; i++) {
         struct code_sample *s = &r->sample[i];

@@ -161,7 +161,7 @@ static int by_value(const void *a, const void *b)
 /* Predicted against measured, of every sample. */
 static void judge_residuals(struct collective_times *t)
 {
-    double off[COLLECTIVE_TIMES_MOST];
+    double off[COLLECTIVE_TIMES_MOST] = {0};
     t->residual = t->median_residual = 0;
     for (int i = 0; i < t->n; i++) {
         off[i] = fabs(t->sample[i].predicted / t->sample[i].measured - 1);
