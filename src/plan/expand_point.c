@@ -133,13 +133,12 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
 /* Whether the point fits its machine, with a message at the place that the user can change. */
 static bool check_fits(struct expansion *x, const struct run_spec *run)
 {
-    const struct setting *ranks = last_of(x, is_ranks);
+    const struct setting *ranks = last_of(x, is_ranks), *bodies = last_of(x, is_bodies);
     const struct machine_spec *m = &run->machine;
     int64_t n = machine_spec_processors(m);
     CHECK(ranks != NULL); /* a plan without them is refused before its points are made */
     /* `ranks: n`: the place to change is that of n. */
-    if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL)
-        ranks = last_of(x, is_bodies);
+    if (ranks->kind == SETTING_RANKS_ARE_N && bodies != NULL) ranks = bodies;
     if (!machine_file_check(m, ranks->file, ranks->line, x->err)) return false;
     /* A list of places must have one for every rank. */
     if (m->placement.kind == PLACEMENT_LIST && m->placement.nlist < run->nrank)

@@ -101,6 +101,7 @@ every_figure() {
     works mimdsim stability small.yaml -o all.db --quiet
     works mimdsim explain small.yaml --measure -o all.db --quiet
     works mimdsim load t3e-300 --level packet --rates 0.02,0.05 --no-saturation --messages 10000 -o all.db --quiet
+    works mimdsim interference neighbours -o all.db --dir neighbours --quiet
     run mimdsim validate paragon -o all.db --quiet
     run mimdsim claims all.db
     # a plane of two parameters, by hand: to simulate one takes long
