@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/check.h"
@@ -206,10 +207,13 @@ bool job_spread(struct job *j, const struct plan *p, struct run_spec *run,
 
 int job_end(struct job *j, int status)
 {
+    static const struct timespec a_moment = {.tv_nsec = 100000000};
     if (!j->on) return status;
     /* Those that wait for the first process, or for one that has gone, would wait for ever. */
     if (j->h.rank == 0 && (j->gone > 0 || (j->agreed && !j->started))) {
         fflush(stdout);
+        /* Launchers lose what was said just before: they get the time to read it. */
+        nanosleep(&a_moment, NULL);
         j->h.call->abort(status);
     }
     j->h.call->end();

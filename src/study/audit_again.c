@@ -9,11 +9,13 @@
 #include "run/run.h"
 #include "study/audit_rules.h"
 
-/* Columns that depend on the host, the clock or the order of runs: they differ every time and
- * are not compared. machine_hash is checked with the configuration (audit_config.c). */
+/* Columns that depend on the host, the clock or the order of runs, and the name that somebody gave
+ * a run: they may differ and are not compared. machine_hash is checked with the configuration
+ * (audit_config.c). */
 static const char *const host_column[] = {
     "id",           "run_id",          "build_id",         "created_utc", "host_s",
-    "host_total_s", "host_peak_bytes", "stack_peak_bytes", "scenario",    "machine_hash"};
+    "host_total_s", "host_peak_bytes", "stack_peak_bytes", "scenario",    "machine_hash",
+    "label"};
 
 /* The tables that hold rows of a run, with the column of its id and the order that makes two
  * reads comparable. */

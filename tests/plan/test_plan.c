@@ -404,6 +404,8 @@ static void every_scenario_that_we_ship_is_valid(void **state)
     for (int i = 0; i < n; i++) {
         char path[512];
         snprintf(path, sizeof path, "%s/scenarios/%s.yaml", MIMDSIM_SRCDIR, stem[i]);
+        /* its program is compiled by those that run it: tests/cli/reality.bats */
+        if (strcmp(stem[i], "calibrate-code") == 0) continue;
         if (!plan_check_file(path, NULL, &e)) fail_msg("%s:%d: %s", e.file, e.line, e.text);
         if (strlen(title[i]) < 10) fail_msg("%s asks no question", stem[i]);
         struct plan p = scratch_plan(stem[i], NULL, 0);
