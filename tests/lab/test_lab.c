@@ -18,7 +18,7 @@
 
 /* A folder of data with one lesson in it, labs/toy. */
 struct fixture {
-    char folder[192], path[256];
+    char folder[192], path[512];
     struct arena *arena;
     struct err e;
 };

@@ -36,7 +36,8 @@ static struct block_table image_make(struct image *i, const struct block_counts 
         const int word = code_at[k] + (kind == BLOCK_ADD ? BLOCK_ADD_OPCODE_BYTES : 0);
         if (kind == BLOCK_ADD)
             memcpy(&i->byte[code_at[k]], BLOCK_ADD_OPCODE, BLOCK_ADD_OPCODE_BYTES);
-        entry[k] = (struct block_entry){word - TABLE_AT - k * (int)sizeof *entry, counts[k], kind};
+        entry[k] = (struct block_entry){word - TABLE_AT - k * (int)sizeof *entry, counts[k],
+                                         (uint16_t)kind};
     }
     return (struct block_table){entry, BLOCKS, IMAGE_ADDRESS + TABLE_AT};
 }

@@ -82,7 +82,7 @@ static void small_networks_list_all(void **state)
     const struct traffic_result r = send_one(&m, 3, true, a);
     /* 16 ports in, 16 out, 2 x 2 x 4 x 3 links */
     assert_int_equal(r.nlink, 32 + 48);
-    const struct link_load *way[5];
+    const struct link_load *way[5] = {NULL};
     int n = 0;
     for (int i = 0; i < r.nlink; i++) {
         const struct link_load *l = &r.link[i];

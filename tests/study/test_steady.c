@@ -34,7 +34,7 @@ static void warm_up_ends_with_the_transient(void **state)
             int64_t d = steady_mser(x, N, &settled);
             assert_true(settled);
             assert_int_equal(d % 5, 0);
-            assert_true(d > 0.8 * length[k] && d < length[k] + 400);
+            assert_true((double)d > 0.8 * length[k] && d < length[k] + 400);
             struct steady s = steady_state(x, N);
             assert_true(s.settled && fabs(s.mean - 10) < 0.12);
         }
