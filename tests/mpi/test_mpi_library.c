@@ -143,7 +143,7 @@ static int deleted[64], ndeleted, refuse_from; /* deletions from this number on 
 static int on_copy(MPI_Comm c, int key, void *extra, void *in, void *out, int *flag)
 {
     (void)c, (void)key;
-    *(void **)out = (char *)in + 100;
+    *(void **)out = (void *)((uintptr_t)in + 100);
     *flag = *(int *)extra;
     return MPI_SUCCESS;
 }
