@@ -103,7 +103,8 @@ static const char *const kind_name[KINDS] = {"digit", "sign", "exchange", "NULL"
 static const struct table {
     const char *name, *key, *free;
 } tables[] = {
-    {"run", "id", " id build_id created_utc host_s host_total_s host_peak_bytes stack_peak_bytes "},
+    {"run", "id",
+     " id build_id created_utc host_s host_total_s host_peak_bytes stack_peak_bytes label "},
     {"run_setting", "run_id, setting_id", " "},
     {"setting", "id", " id "},
     {"stage", "run_id, stage", " "},
