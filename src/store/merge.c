@@ -57,15 +57,22 @@ static bool attach(struct store *s, const char *from, struct err *e)
     return ok;
 }
 
-/* Whether the schema has this table since the first databases of this version (store.c adds the
- * others when it opens a database for writing). */
-static bool is_optional(const char *table)
+/* Whether schema.sql makes this table so. */
+static bool is_made(const char *how, const char *table)
 {
     struct text made = {0};
-    text_add(&made, "CREATE TABLE IF NOT EXISTS %s (", table);
+    text_add(&made, "%s %s (", how, table);
     const bool found = strstr(schema_text(), made.s) != NULL;
     text_free(&made);
     return found;
+}
+
+/* Tables of the first databases of this version, and those that came later, which store.c adds when
+ * it opens a database for writing. All others are the user's own and stay where they are. */
+static bool is_required(const char *table) { return is_made("CREATE TABLE", table); }
+static bool is_optional(const char *table)
+{
+    return is_made("CREATE TABLE IF NOT EXISTS", table);
 }
 
 /* Every table of ours must be there, but for those that came later: they are empty then. A view
@@ -81,7 +88,8 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
                   -1, &q, NULL) == SQLITE_OK;
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
         const bool absent = sqlite3_column_type(q, 1) == SQLITE_NULL;
-        lacking += !absent || !is_optional(store_cell(q, 0));
+        const char *table = store_cell(q, 0);
+        lacking += is_required(table) || (!absent && is_optional(table));
     }
     ok = (sqlite3_finalize(q) == SQLITE_OK && ok) || store_failed(s, e);
     return ok && (lacking == 0 || err_set(e, ERR_DATA,
@@ -220,9 +228,11 @@ static bool take_parts(struct store *s, struct err *e)
             -1, &q, NULL) == SQLITE_OK;
     if (!ok) store_failed(s, e);
     bool row = true;
-    while (ok && (ok = store_next(s, q, &row, e)) && row)
-        ok = take_rows(s, "INSERT", store_cell(q, 0),
-                       "JOIN merge_run m ON m.old = t.run_id", e);
+    while (ok && (ok = store_next(s, q, &row, e)) && row) {
+        const char *table = store_cell(q, 0);
+        if (!is_required(table) && !is_optional(table)) continue;
+        ok = take_rows(s, "INSERT", table, "JOIN merge_run m ON m.old = t.run_id", e);
+    }
     sqlite3_finalize(q);
     return ok;
 }
