@@ -41,7 +41,7 @@ static int remove_folder(void **state)
 }
 
 /* Statements on the file as it is, without this program. */
-static void sql(const char *path, const char *text)
+static inline void sql(const char *path, const char *text)
 {
     sqlite3 *db;
     char *why = NULL;
