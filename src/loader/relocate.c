@@ -46,12 +46,21 @@ static void put(struct loader_template *t, uint64_t place, uint64_t value)
     memcpy(t->bytes + place, &value, sizeof value);
 }
 
+/* Whether the list "a, b" has this name: whole, since it may be a part of another one. */
+static bool is_noted(const struct missing *m, const char *name)
+{
+    const size_t n = strlen(name);
+    for (const char *at = m->text; (at = strstr(at, name)) != NULL; at++)
+        if ((at == m->text || at[-1] == ' ') && (at[n] == ',' || at[n] == '\0')) return true;
+    return false;
+}
+
 /* Once each, as far as the message has room. */
 static void note_missing(struct missing *m, const char *name)
 {
     size_t used = strlen(m->text);
     m->n++;
-    if (strstr(m->text, name) || used + strlen(name) + 3 > sizeof m->text) return;
+    if (is_noted(m, name) || used + strlen(name) + 3 > sizeof m->text) return;
     snprintf(m->text + used, sizeof m->text - used, "%s%s", used ? ", " : "", name);
 }
 
