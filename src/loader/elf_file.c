@@ -111,9 +111,10 @@ static bool check_segment(const struct elf_file *f, const Elf64_Phdr *p, struct 
         (last->p_flags != p->p_flags || p->p_vaddr < end))
         return elf_bad(f, e, "two segments share a page");
     if (p->p_vaddr - end > MOST_GAP) return elf_bad(f, e, "a segment's address is out of range");
-    /* Text and constants come first: they are what ranks share. */
-    if ((last->p_flags & PF_W) && (p->p_flags & PF_X))
-        return elf_bad(f, e, "program text behind data; link with GNU ld or LLVM lld");
+    /* Text comes first: it is what ranks share. From the first page of data on all is private. */
+    for (int i = 0; i < f->nsegment; i++)
+        if ((f->segment[i].p_flags & PF_W) && (p->p_flags & PF_X))
+            return elf_bad(f, e, "program text behind data; link with GNU ld or LLVM lld");
     return true;
 }
 
