@@ -36,7 +36,20 @@ bool loader_find_address(const struct loader_template *t, const void *address, i
     return false;
 }
 
-/* A call stands before it: E8, or FF /2 with its shorter forms (Intel SDM 2, CALL). */
+/* The length of FF /2 with its operand, from its second byte on (Intel SDM 2, tables 2-2 and 2-3):
+ * a byte for base and index where the operand has them, then none, one or four of distance. 0: it
+ * is another instruction. */
+static int length_of_call(const unsigned char *p)
+{
+    const int mode = p[0] >> 6, base = p[0] & 7;
+    if ((p[0] & 0x38) != 0x10) return 0;
+    const bool index = mode != 3 && base == 4;
+    const bool far = mode == 2 || (mode == 0 && (base == 5 || (index && (p[1] & 7) == 5)));
+    return 2 + index + (far ? 4 : mode == 1);
+}
+
+/* A call stands before it: E8, or FF /2, which has two to seven bytes; a prefix for more registers
+ * may stand before these. */
 bool loader_is_return(const struct loader_instance *i, const void *address)
 {
     const struct loader_template *t = i->t;
@@ -47,9 +60,10 @@ bool loader_is_return(const struct loader_instance *i, const void *address)
         if (place < f->begin + 8 || place >= f->data || !image_code(&f->elf, place - f->place - 8))
             continue;
         const unsigned char *p = (const unsigned char *)(uintptr_t)pc;
-        return p[-5] == 0xe8 || (p[-6] == 0xff && p[-5] == 0x15) ||
-               (p[-2] == 0xff && (p[-1] & 0x38) == 0x10) ||
-               (p[-3] == 0xff && (p[-2] & 0x38) == 0x10) || (p[-3] == 0x41 && p[-2] == 0xff);
+        bool call = p[-5] == 0xe8;
+        for (int n = 2; n <= 7 && !call; n++)
+            call = p[-n] == 0xff && length_of_call(p - n + 1) == n;
+        return call;
     }
     return false;
 }
