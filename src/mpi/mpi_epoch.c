@@ -41,6 +41,13 @@ static void post(struct mpi_rank *r, const struct mpi_window *w, const struct mp
                    NULL, 0, &q[i]);
 }
 
+/* The window keeps the group; the empty group is a constant without a handle, which is never
+ * written. */
+static void keep(struct mpi_group *g)
+{
+    if (g->o.number >= 0) g->o.uses++;
+}
+
 int mpi_win_post(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -53,9 +60,7 @@ int mpi_win_post(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win
     if (w->exposed)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "the window is exposed already");
     w->exposed = g;
-    /* The window keeps the group; the empty group is a constant without a handle, which
-     * nobody counts. */
-    g->o.uses += g->o.number >= 0;
+    keep(g);
     w->completed = mpi_take_zero(self->world, (g->size + 1) * (int64_t)sizeof *w->completed);
     post(self, w, g, TAG_COMPLETE, w->completed);
     tell(self, w, g, TAG_POST);
@@ -73,7 +78,7 @@ int mpi_win_start(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win wi
     if (w->access)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "MPI_Win_start was called before");
     w->access = g;
-    g->o.uses += g->o.number >= 0;
+    keep(g);
     struct comm_request *q = mpi_take_zero(self->world, (g->size + 1) * (int64_t)sizeof *q);
     post(self, w, g, TAG_POST, q);
     for (int i = 0; i < g->size; i++) mpi_wait_request(self, &q[i]);
