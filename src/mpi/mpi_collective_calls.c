@@ -78,10 +78,12 @@ static int check_types(struct mpi_rank *r, const struct mpi_collective *x, struc
     return MPI_SUCCESS;
 }
 
-/* Blocks are as many as there are ranks, or edges of a topology. */
+/* Blocks are as many as there are ranks, on the other side of an intercommunicator, or edges of a
+ * topology. What is reduced there is scattered over the own side (section 6.10). */
 static int check_blocks(struct mpi_rank *r, const struct mpi_collective *x)
 {
-    int nin = x->comm->remote ? x->comm->remote->size : x->comm->size, nout = nin;
+    const bool across = x->comm->remote && x->what != WHAT_REDUCE_SCATTER;
+    int nin = across ? x->comm->remote->size : x->comm->size, nout = nin;
     if (x->what >= WHAT_NEIGHBOR_ALLGATHER) {
         if (!x->comm->topology)
             return mpi_error(r, x->comm, MPI_ERR_TOPOLOGY, "the communicator has no topology");
@@ -99,6 +101,8 @@ static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
 {
     int code = check_root(r, x);
     if (code != MPI_SUCCESS) return code;
+    if (x->comm->remote && (x->what == WHAT_SCAN || x->what == WHAT_EXSCAN))
+        return mpi_error(r, x->comm, MPI_ERR_COMM, "an intercommunicator has no order of ranks");
     if (x->send_count < 0 || x->recv_count < 0)
         return count_error(r, x->comm, x->send_count < 0 ? x->send_count : x->recv_count);
     code = check_blocks(r, x);
@@ -378,6 +382,7 @@ int mpi_reduce(struct mpi_rank *self, struct mpi_start start, const void *sendbu
         return combine(self, start, &x, datatype, op, comm);                                       \
     }
 ALL_COMBINE(mpi_allreduce, WHAT_ALLREDUCE, count, MPI_Count, recv_count)
+/* Ranks of two groups have no order in common (section 6.11). */
 ALL_COMBINE(mpi_scan, WHAT_SCAN, count, MPI_Count, recv_count)
 ALL_COMBINE(mpi_exscan, WHAT_EXSCAN, count, MPI_Count, recv_count)
 ALL_COMBINE(mpi_reduce_scatter_block, WHAT_REDUCE_SCATTER, recvcount, MPI_Count, recv_count)
