@@ -108,23 +108,49 @@ static int copied(struct mpi_rank *r, const struct mpi_attribute *a, void **valu
     return (int)mpi_call_program(r, k->copy, argument);
 }
 
-/* Oldest first, so that the copy's list has the same order. Names are not attributes and
- * stay behind. */
-static int copy_from(struct mpi_rank *r, const struct mpi_attribute *a, enum mpi_kind kind,
-                     const void *from, const void *to)
+/* A keyval ends with its last use. */
+static void keyval_drop(struct mpi_rank *r, struct mpi_keyval *k)
 {
-    if (!a) return MPI_SUCCESS;
-    int code = copy_from(r, a->next, kind, from, to), flag = 0;
-    void *value = NULL;
-    if (code != MPI_SUCCESS || a->kind != kind || a->object != from || !a->keyval) return code;
-    code = copied(r, a, &value, &flag);
-    if (code == MPI_SUCCESS && flag) attach(r, kind, to, a->keyval, value);
-    return code;
+    if (--k->o.uses == 0) mpi_handle_end(r, k);
 }
 
+/* The keyvals under which an object has values, oldest first, each with one use more; NULL: none.
+ * Names are no attributes. */
+static struct mpi_keyval **keyvals_of(struct mpi_rank *r, enum mpi_kind kind, const void *object,
+                                      int *n)
+{
+    const struct mpi_attribute *a;
+    *n = 0;
+    for (a = r->attributes; a; a = a->next)
+        *n += a->kind == kind && a->object == object && a->keyval;
+    if (*n == 0) return NULL;
+    struct mpi_keyval **k = mpi_take(r->world, *n * (int64_t)sizeof *k);
+    int at = *n;
+    for (a = r->attributes; a; a = a->next)
+        if (a->kind == kind && a->object == object && a->keyval) {
+            k[--at] = a->keyval;
+            a->keyval->o.uses++;
+        }
+    return k;
+}
+
+/* Oldest first, so that the copy's list has the same order. The program's functions may change the
+ * list, so each value is looked for when its turn comes. */
 int mpi_attributes_copy(struct mpi_rank *r, enum mpi_kind kind, const void *from, const void *to)
 {
-    return copy_from(r, r->attributes, kind, from, to);
+    int n, code = MPI_SUCCESS;
+    struct mpi_keyval **k = keyvals_of(r, kind, from, &n);
+    for (int i = 0; i < n && code == MPI_SUCCESS; i++) {
+        const struct mpi_attribute *a = *find(r, kind, from, k[i]);
+        void *value = NULL;
+        int flag = 0;
+        if (!a) continue;
+        code = copied(r, a, &value, &flag);
+        if (code == MPI_SUCCESS && flag) attach(r, kind, to, k[i], value);
+    }
+    for (int i = 0; i < n; i++) keyval_drop(r, k[i]);
+    mpi_give(r->world, k);
+    return code;
 }
 
 /* --- keyvals --- */
