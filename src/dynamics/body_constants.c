@@ -17,7 +17,7 @@ static void rotation_of(const double *quat, quad *r)
     r[6] = f * (x * z - w * y), r[7] = f * (y * z + w * x), r[8] = 1 - f * (x * x + y * y);
 }
 
-/* x = the given direction made unit; powers of two first, so that no square overflows. */
+/* x = the given direction made unit. Squares of doubles overflow in doubles, never in quad. */
 void direction_unit(const double *from, quad *x)
 {
     for (int i = 0; i < 3; i++) x[i] = from[i];

@@ -50,9 +50,10 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         add_body(d, i, &x[i], t);
-        /* Springs store energy, dampers do not. k (q - rest)^2 / 2. */
+        /* Springs store energy, dampers do not. k (q - rest)^2 / 2, where u = q'; the rate of a
+         * helical joint is u = q' / unit, and so is the power of its spring. */
         real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
-        t->potential += b->stiffness * stretch * stretch / 2;
+        t->potential += b->stiffness * stretch * stretch / 2 / b->unit;
     }
     /* Massless systems have no centre. */
     for (int k = 0; k < 3 && t->mass > 0; k++) t->com[k] /= t->mass;
