@@ -1,0 +1,251 @@
+/* test_oscillator.c - a mass on a spring, whose steps in time textbooks give in closed form, and
+ * reports of the constraint force algorithm. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "dynamics/dynamics_table.h"
+#include "dynamics/integrate.h"
+#include "dynamics/refine.h"
+#include "dynamics/trajectory.h"
+#include "scene.h"
+
+static const struct dynamics_type *exact(void) { return dynamics_type_of(PRECISION_DOUBLE); }
+
+/* ---- steps in time of one mass on a spring ---- */
+
+/* A mass on a prismatic joint with spring and damper. */
+static struct scene oscillator(double mass, double stiffness, double damping, double rest)
+{
+    struct scene s = {.a = arena_create()};
+    struct err e;
+    err_clear(&e);
+    struct body_def b = {.name = "mass",
+                         .parent = -1,
+                         .joint = JOINT_PRISMATIC,
+                         .axis = {0, 1, 0},
+                         .mass = mass,
+                         .inertia = {1, 0, 0, 1, 0, 1},
+                         .stiffness = stiffness,
+                         .rest = rest,
+                         .damping = damping};
+    s.model = model_begin(s.a, NULL);
+    assert_true(model_add_body(s.model, &b, &e) >= 0);
+    assert_true(model_finish(s.model, false, &e));
+    s.state = state_take(s.model, s.a);
+    return s;
+}
+
+/* Of the undamped mass: what the symplectic rules keep exactly, step after step. */
+static void symplectic_steps_keep_their_own_energy(void **state)
+{
+    (void)state;
+    const double m = 2.5, k = 90, h = 0.05, rest = 0.4, z = h * h * k / m;
+    struct scene s = oscillator(m, k, 0, rest);
+    s.state->q[0] = rest + 0.3, s.state->qd[0] = -1.1;
+    double first[2] = {0};
+    for (int rule = 0; rule < 2; rule++)
+        for (int step = 0; step < 200; step++) {
+            const double q = s.state->q[0] - rest, u = s.state->qd[0];
+            /* Hairer, Lubich, Wanner: Geometric Numerical Integration, I.1 and IX.3: of symplectic
+             * Euler u^2 + w^2 q^2 - h w^2 q u, of Stoermer-Verlet u^2 + w^2 q^2 (1 - h^2 w^2 / 4)
+             */
+            const double kept = rule == 0 ? u * u + k / m * q * q - h * k / m * q * u
+                                          : u * u + k / m * q * q * (1 - z / 4);
+            if (step == 0) first[rule] = kept;
+            assert_true(fabs(kept - first[rule]) <= 1e-12 * first[rule]);
+            assert_true(exact()->advance(
+                s.model, s.state, rule == 0 ? STEP_SEMI_IMPLICIT : STEP_KDK, h, 1, s.a, NULL));
+        }
+    scene_end(&s);
+}
+
+/* A step of each rule as a 2 x 2 matrix on (q - rest, u), from the textbook. */
+static void one_step_is_the_textbooks_matrix(void **state)
+{
+    (void)state;
+    const double m = 1.5, k = 20, c = 0.8, rest = -0.2, h = 0.07;
+    struct scene s = oscillator(m, k, c, rest);
+    for (int trial = 0; trial < 6; trial++) {
+        const double q = 0.5 - 0.2 * trial, u = -1 + 0.45 * trial;
+        /* Runge-Kutta 4: the exponential series of h A to its fourth power */
+        double x[2] = {q, u}, term[2] = {q, u};
+        for (int p = 1; p <= 4; p++) {
+            const double t[2] = {h / p * term[1], h / p * (-k * term[0] - c * term[1]) / m};
+            memcpy(term, t, sizeof t);
+            x[0] += t[0], x[1] += t[1];
+        }
+        s.state->q[0] = rest + q, s.state->qd[0] = u;
+        assert_true(exact()->advance(s.model, s.state, STEP_RK4, h, 1, s.a, NULL));
+        assert_true(fabs(s.state->q[0] - rest - x[0]) < 1e-14 &&
+                    fabs(s.state->qd[0] - x[1]) < 1e-13);
+        /* backward Euler, which the linearly implicit rule is for a linear spring */
+        s.state->q[0] = rest + q, s.state->qd[0] = u;
+        assert_true(exact()->advance(s.model, s.state, STEP_LINEARLY_IMPLICIT, h, 1, s.a, NULL));
+        const double after = (m * u - h * k * q) / (m + h * c + h * h * k);
+        assert_true(fabs(s.state->qd[0] - after) < 1e-14);
+        assert_true(fabs(s.state->q[0] - rest - q - h * after) < 1e-15);
+        /* symplectic Euler: velocity first */
+        s.state->q[0] = rest + q, s.state->qd[0] = u;
+        assert_true(exact()->advance(s.model, s.state, STEP_SEMI_IMPLICIT, h, 1, s.a, NULL));
+        const double kicked = u + h * (-k * q - c * u) / m;
+        assert_true(fabs(s.state->qd[0] - kicked) < 1e-14);
+        assert_true(fabs(s.state->q[0] - rest - q - h * kicked) < 1e-15);
+    }
+    scene_end(&s);
+}
+
+/* Without a damper: q = a cos wt + b / w sin wt. */
+static void every_stepper_follows_the_cosine(void **state)
+{
+    (void)state;
+    const double m = 2, k = 50, rest = 0.1, omega = 5, time = 0.9;
+    for (const char *const *name = trajectory_steppers(); *name != NULL; name++) {
+        struct scene s = oscillator(m, k, 0, rest);
+        struct err e;
+        err_clear(&e);
+        s.state->q[0] = rest + 0.2, s.state->qd[0] = 0.5;
+        /* the first orders take too many steps for more digits */
+        const bool first_order = strcmp(*name, "rk1imp") == 0;
+        const double tolerance = first_order ? 1e-5 : 1e-8;
+        const struct trajectory_options o = {.stepper = *name, .tolerance = tolerance};
+        struct trajectory_report report = {0};
+        if (!trajectory_advance(s.model, s.state, time, &o, s.a, &report, &e))
+            fail_msg("%s: %s", *name, e.text);
+        const double q = 0.2 * cos(omega * time) + 0.5 / omega * sin(omega * time),
+                     u = -0.2 * omega * sin(omega * time) + 0.5 * cos(omega * time);
+        assert_true(fabs(s.state->q[0] - rest - q) < 1e4 * tolerance * 0.2);
+        assert_true(fabs(s.state->qd[0] - u) < 1e4 * tolerance);
+        assert_true(report.steps > 3 && report.evaluations >= report.steps);
+        scene_end(&s);
+    }
+}
+
+/* What fails leaves the state as it was. */
+static void a_trajectory_that_fails_moves_nothing(void **state)
+{
+    (void)state;
+    const struct trajectory_options row[] = {
+        {.stepper = "none", .tolerance = 1e-6},
+        {.stepper = "rk4", .tolerance = 1e-12, .most_evaluations = 20},
+        /* an explicit rule with steps a thousand times too long leaves all numbers behind */
+        {.stepper = "rk4", .fixed_steps = 200, .tolerance = 1e-6},
+    };
+    for (int i = 0; i < 3; i++) {
+        struct scene s = oscillator(1, 1e14, 0, 0);
+        struct err e;
+        err_clear(&e);
+        s.state->q[0] = 0.2, s.state->qd[0] = 0.5;
+        assert_false(trajectory_advance(s.model, s.state, 100, &row[i], s.a, NULL, &e));
+        assert_int_equal(e.kind, i == 0 ? ERR_USAGE : ERR_CHECK);
+        assert_true(s.state->q[0] == 0.2 && s.state->qd[0] == 0.5);
+        scene_end(&s);
+    }
+}
+
+/* ---- constraint forces ---- */
+
+static void sizes_are_relative_to_the_answer(void **state)
+{
+    (void)state;
+    static const struct {
+        double x[3], y[3], wanted;
+    } row[] = {
+        {{1, -3, 2}, {4, 6, -5}, 0.5},
+        {{0, 0, 0}, {0, 0, 0}, 0},
+        {{0, 1e-300, 0}, {0, 0, 0}, 1},
+        {{1, NAN, 1}, {1, 1, 1}, INFINITY},
+        {{1, 1, -INFINITY}, {1, 1, 1}, INFINITY},
+        {{0, 0, 0}, {0, -2, 0}, 0},
+        {{NAN, 0, 0}, {0, 0, 0}, INFINITY},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        assert_true(relative_size(3, row[i].x, row[i].y) == row[i].wanted);
+    assert_true(relative_size(2, row[0].x, row[0].y) == 0.5);
+    assert_true(relative_size(1, row[0].x, row[0].y) == 0.25);
+    assert_true(relative_size(0, row[0].x, row[0].y) == 0);
+}
+
+/* Bodies without an inertia of their own: the constraint forces have no system, articulated bodies
+ * have an answer, and the robust way takes it and says so. */
+static void without_inertia_articulated_bodies_take_over(void **state)
+{
+    (void)state;
+    struct scene s = {.a = arena_create()};
+    struct err e;
+    err_clear(&e);
+    s.model = model_begin(s.a, NULL);
+    for (int i = 0; i < 6; i++) {
+        struct body_def b = {.name = "link",
+                             .parent = i - 1,
+                             .joint = JOINT_REVOLUTE,
+                             .axis = {i % 2, 0, 1 - i % 2},
+                             .com = {0.5}};
+        b.placement.p[0] = i > 0;
+        if (i % 3 != 1) b.mass = 1 + i, memcpy(b.inertia, (double[6]){.1, 0, 0, .2, 0, .3}, 48);
+        assert_true(model_add_body(s.model, &b, &e) >= 0);
+    }
+    s.model->gravity[1] = -9.81;
+    assert_false(s.model->has_phi);
+    if (!model_finish(s.model, true, &e)) fail_msg("%s", e.text);
+    assert_false(s.model->has_phi);
+    s.state = state_take(s.model, s.a);
+    double qdd[6], reference[6];
+    for (int i = 0; i < 6; i++) s.state->q[i] = 0.3 * i - 0.5, s.state->qd[i] = 1 - 0.4 * i;
+    assert_true(dynamics_type_of(PRECISION_QUAD)
+                    ->forward(s.model, s.state, FORWARD_ABA, s.a, reference, NULL, NULL, NULL));
+    for (int k = 0; k < FORWARD_METHODS; k++) {
+        struct forward_report report;
+        const bool forces = k == FORWARD_CFA_PAPER || k == FORWARD_CFA_DIRECT;
+        assert_int_equal(exact()->forward(s.model, s.state, (enum forward_method)k, s.a, qdd, NULL,
+                                          &report, NULL),
+                         !forces);
+        if (forces) continue;
+        assert_int_equal(report.fell_back, k == FORWARD_CFA_ROBUST);
+        assert_true(relative_error(6, qdd, reference) < 1e-10);
+    }
+    scene_end(&s);
+}
+
+/* A last body without any inertia along its joint has no acceleration: every method says so. */
+static void nothing_to_accelerate_is_told(void **state)
+{
+    (void)state;
+    struct scene s = {.a = arena_create()};
+    struct err e;
+    err_clear(&e);
+    s.model = model_begin(s.a, NULL);
+    for (int i = 0; i < 2; i++) {
+        struct body_def b = {
+            .name = "link", .parent = i - 1, .joint = JOINT_REVOLUTE, .axis = {0, 0, 1}};
+        if (i == 0) b.mass = 1, memcpy(b.inertia, (double[6]){1, 0, 0, 1, 0, 1}, 48);
+        assert_true(model_add_body(s.model, &b, &e) >= 0);
+    }
+    assert_true(model_finish(s.model, true, &e));
+    s.state = state_take(s.model, s.a);
+    s.state->tau[1] = 1;
+    double qdd[2];
+    for (int k = 0; k < FORWARD_METHODS; k++)
+        assert_false(
+            exact()->forward(s.model, s.state, (enum forward_method)k, s.a, qdd, NULL, NULL, NULL));
+    scene_end(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(symplectic_steps_keep_their_own_energy),
+        cmocka_unit_test(one_step_is_the_textbooks_matrix),
+        cmocka_unit_test(every_stepper_follows_the_cosine),
+        cmocka_unit_test(a_trajectory_that_fails_moves_nothing),
+        cmocka_unit_test(sizes_are_relative_to_the_answer),
+        cmocka_unit_test(without_inertia_articulated_bodies_take_over),
+        cmocka_unit_test(nothing_to_accelerate_is_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
