@@ -337,7 +337,7 @@ static bool put_slack(struct store *s, int64_t run, const struct why *w, struct 
     return ok;
 }
 
-/* By number, as in table link_load, and by name for people. */
+/* By number, as in view link_load, and by name for people. */
 static bool put_resources(struct store *s, int64_t run, const struct why *w, struct err *e)
 {
     static const char *const name[] = {"run_id", "link", "name", "time_ps"};

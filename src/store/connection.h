@@ -30,10 +30,10 @@
     X(RUN_INSERT, NULL)                                                                            \
     X(STAGE, NULL)                                                                                 \
     X(RANK_TIMES, "INSERT INTO rank_times VALUES (?1, ?2)")                                        \
+    X(LINK_LOADS, "INSERT INTO link_loads VALUES (?1, ?2)")                                        \
     X(BASELINE, NULL)                                                                              \
     X(ERROR_CHECK, NULL)                                                                           \
     X(OMISSION, NULL)                                                                              \
-    X(LINK_LOAD, NULL)                                                                             \
     X(SPAN, NULL)
 
 enum statement {
@@ -46,7 +46,7 @@ enum statement {
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
     STORE_VERSION =
-        9, /* of schema.sql, in user_version; to be raised, too, when a default changes */
+        10, /* of schema.sql, in user_version; to be raised, too, when a default changes */
     STORE_OLDEST = 4,        /* the oldest version that is upgraded */
     STORE_BUSY_MS = 2000,    /* how long another program's lock is waited for while nobody writes */
     STORE_RANK_ROWS = 256,   /* more ranks: table rank_times stays empty */

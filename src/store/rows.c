@@ -13,7 +13,7 @@
 #include "measure/study_row.h"
 #include "spec/field.h"
 #include "spec/spec_fields.h"
-#include "store/rank_times.h"
+#include "store/run_entries.h"
 #include "store/schema.h"
 
 enum { MOST_SEGMENTS = 5 };
@@ -40,7 +40,6 @@ static const struct row_table row_table[] = {
     {STATEMENT_BASELINE, "baseline", "run_id, ordinal", "", "", {&baseline_columns}},
     {STATEMENT_ERROR_CHECK, "error_check", "run_id, ordinal", "", "", {&error_check_columns}},
     {STATEMENT_OMISSION, "run_omission", "run_id", "", "", {&omission_columns}},
-    {STATEMENT_LINK_LOAD, "link_load", "run_id, link", "", "", {&link_load_columns}},
     {STATEMENT_SPAN, "span", "run_id, span", "", "", {&span_columns}},
 };
 enum { TABLES = sizeof row_table / sizeof *row_table };
@@ -112,17 +111,23 @@ static void add_columns(const char *name, size_t length, struct text *sql)
     check_failed(__FILE__, __LINE__, missing.s);
 }
 
-/* What the entries of rank_times hold behind rank and stage, as view rank_stage shows it: "words"
- * are its lines of comment, "fields" its list of columns. */
-static void add_rank_view(const char *part, size_t length, struct text *sql)
+/* A mark VIEW.words or VIEW.fields: what the entries of a run hold behind their keys, as that view
+ * shows it, as its lines of comment or its list of columns. False: the mark is none of these. */
+static bool add_entry_view(const char *mark, struct text *sql)
 {
-    const struct column_table *t = &stage_time_columns;
-    for (int i = 0; i < t->n; i++)
-        if (strncmp(part, "words", length) == 0)
-            text_add(sql, "--   %s: %s\n", t->column[i].name, t->column[i].doc);
+    const struct entry_view *v = entry_view, *end = entry_view + ENTRY_VIEWS;
+    size_t n = 0;
+    for (; v < end; v++)
+        if (n = strlen(v->view), strncmp(mark, v->view, n) == 0 && mark[n] == '.') break;
+    if (v == end) return false;
+    const bool words = strncmp(mark + n, ".words@", 7) == 0;
+    for (int i = 0; i < v->columns->n; i++) {
+        const struct column *c = &v->columns->column[i];
+        if (words) text_add(sql, "--   %s: %s\n", c->name, c->doc);
         else
-            text_add(sql, "       , json_extract(e.value, '$[%d]') AS %s\n", RANK_ENTRY_KEYS + i,
-                     t->column[i].name);
+            text_add(sql, "       , json_extract(e.value, '$[%d]') AS %s\n", v->nkey + i, c->name);
+    }
+    return true;
 }
 
 /* A row for each setting whose 0 has a word of its own (field.h). */
@@ -150,12 +155,8 @@ void rows_schema(struct text *sql)
         /* A mark is a whole line; an @ anywhere else in schema.sql stops the program here. */
         CHECK(end != NULL && end[1] == '\n');
         text_add_bytes(sql, rest, (size_t)(at - rest));
-        static const char view[] = "rank_stage.";
-        const size_t prefix = sizeof view - 1;
         if (strncmp(at + 1, "unlimited@", 10) == 0) add_unlimited(sql);
-        else if (strncmp(at + 1, view, prefix) == 0)
-            add_rank_view(at + 1 + prefix, (size_t)(end - at - 1) - prefix, sql);
-        else add_columns(at + 1, (size_t)(end - at - 1), sql);
+        else if (!add_entry_view(at + 1, sql)) add_columns(at + 1, (size_t)(end - at - 1), sql);
         rest = end + 2;
     }
     text_add(sql, "%s", rest);

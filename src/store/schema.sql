@@ -85,13 +85,12 @@ CREATE TABLE error_check (
     PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
--- Recorded loads of links; of very many only the meta.link_rows_limit busiest.
-CREATE TABLE link_load (
-    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
-    link        INTEGER NOT NULL,      -- number of the link
-@link_load@
-    PRIMARY KEY (run_id, link)
-) STRICT, WITHOUT ROWID;
+-- Recorded loads of links, of very many only the meta.link_rows_limit busiest: all of a run in one text, which view
+-- link_load shows as rows.
+CREATE TABLE link_loads (
+    run_id  INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    entries TEXT NOT NULL              -- JSON: [[link, ...], ...], in the order of the columns of view link_load
+) STRICT;
 
 -- The timeline of a small run, whole or not at all (meta.span_rows_limit); longer ones are files, in table trace.
 CREATE TABLE span (
@@ -245,6 +244,15 @@ CREATE VIEW rank_stage AS
 SELECT t.run_id, json_extract(e.value, '$[0]') AS rank, json_extract(e.value, '$[1]') AS stage
 @rank_stage.fields@
 FROM rank_times t JOIN json_each(t.entries) e;
+
+-- Recorded loads of links (table link_loads).
+--   run_id: the run
+--   link: number of the link
+@link_load.words@
+CREATE VIEW link_load AS
+SELECT t.run_id, json_extract(e.value, '$[0]') AS link
+@link_load.fields@
+FROM link_loads t JOIN json_each(t.entries) e;
 
 -- Speedup against each serial baseline; degree of parallelism f by Amdahl, 1/S = (1 - f) + f/P.
 --   run_id: the run
@@ -591,7 +599,7 @@ CREATE TABLE IF NOT EXISTS path_range (
 -- Links and ports that messages of the critical path pass or wait for; levels without links have the ports alone.
 CREATE TABLE IF NOT EXISTS path_resource (
     run_id  INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
-    link    INTEGER NOT NULL,          -- number as in table link_load
+    link    INTEGER NOT NULL,          -- number as in view link_load
     name    TEXT NOT NULL,             -- between which routers, or whose port
     time_ps INTEGER NOT NULL,          -- of the path
     PRIMARY KEY (run_id, link)

@@ -107,8 +107,8 @@ static bool reads(const char *statement, const char *table)
     return found;
 }
 
-/* What is said of a column: by its own table, by its view, or by the first table that the view
- * reads and has it. */
+/* What is said of a column: by its own table, by its view, or by the first table or view of entries
+ * that the view reads and has it. */
 static void describe(const struct document *d, const char *name, struct text *out)
 {
     if (!d->view) {
@@ -118,9 +118,13 @@ static void describe(const struct document *d, const char *name, struct text *ou
     if (view_comment(d->about, d->statement, name, out)) return;
     for (const char *line = d->schema; *line; line = next_line(line)) {
         char table[64] = "";
-        if (sscanf(line, "CREATE TABLE %63[a-z_]", table) != 1 || !reads(d->statement, table))
+        const bool view = sscanf(line, "CREATE VIEW %63[a-z_]", table) == 1;
+        if ((!view && sscanf(line, "CREATE TABLE %63[a-z_]", table) != 1) ||
+            !reads(d->statement, table))
             continue;
-        if (table_comment(line, name, out)) return;
+        const char *about;
+        if (view) find_statement(d->schema, table, &about);
+        if (view ? view_comment(about, line, name, out) : table_comment(line, name, out)) return;
     }
 }
 

@@ -17,8 +17,8 @@
 #include "spec/run_label.h"
 #include "spec/setting_number.h"
 #include "store/build.h"
-#include "store/rank_times.h"
 #include "store/rows.h"
+#include "store/run_entries.h"
 
 /* Run a statement that finds one row id; *id 0 when there is none. */
 static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err *e)
@@ -194,13 +194,15 @@ static bool put_numbered(struct store *s, enum statement which, int64_t run, int
     return put_row(s, which, &b, row, e);
 }
 
-/* All ranks in one row. */
-static bool put_rank_times(struct store *s, int64_t run, const struct run_result *r, struct err *e)
+/* All ranks, or all links, in one row. */
+static bool put_entries(struct store *s, enum statement which, int64_t run,
+                        void (*entries)(const struct run_result *, struct text *),
+                        const struct run_result *r, struct err *e)
 {
     struct binding b;
     struct text t = {0};
-    if (!bind_start(s, STATEMENT_RANK_TIMES, &b, e)) return false;
-    rank_times_add(r, &t);
+    if (!bind_start(s, which, &b, e)) return false;
+    entries(r, &t);
     bind_int(&b, run);
     store_bound(
         sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8));
@@ -219,7 +221,8 @@ static bool put_stages(struct store *s, int64_t run, const struct run_result *r,
         const struct stage_row row = stage_row_make(r, i);
         if (!put_numbered(s, STATEMENT_STAGE, run, i, &row, e)) return false;
     }
-    return s->passing || r->nrank > STORE_RANK_ROWS || put_rank_times(s, run, r, e);
+    return s->passing || r->nrank > STORE_RANK_ROWS || 
+           put_entries(s, STATEMENT_RANK_TIMES, run, rank_entries, r, e);
 }
 
 /* The serial codes of the run, in the order in which they were timed. */
@@ -251,30 +254,11 @@ static bool put_omissions(struct store *s, int64_t run, const struct run_result 
     return true;
 }
 
-/* For qsort: busiest first, by longest queues, then longest use, then place, so that the choice
- * is the same every time. */
-static int compare_load(const void *a, const void *b)
-{
-    const struct link_load *x = *(const struct link_load *const *)a,
-                           *y = *(const struct link_load *const *)b;
-    if (x->queue_ps != y->queue_ps) return x->queue_ps > y->queue_ps ? -1 : 1;
-    if (x->busy_ps != y->busy_ps) return x->busy_ps > y->busy_ps ? -1 : 1;
-    return x < y ? -1 : x > y;
-}
-
+/* Where they were recorded. */
 static bool put_links(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
-    if (r->nlink == 0 || r->link == NULL) return true;
-    const struct link_load **order = memory_take((size_t)r->nlink, sizeof *order);
-    for (int i = 0; i < r->nlink; i++) order[i] = &r->link[i];
-    /* All links where there are few; the busiest of many, as those limit the run. */
-    if (r->nlink > STORE_LINK_ROWS) qsort(order, (size_t)r->nlink, sizeof *order, compare_load);
-    bool ok = true;
-    /* order[i] - r->link: the link's number. */
-    for (int i = 0; i < r->nlink && i < STORE_LINK_ROWS && ok; i++)
-        ok = put_numbered(s, STATEMENT_LINK_LOAD, run, order[i] - r->link, order[i], e);
-    free(order);
-    return ok;
+    return r->nlink == 0 || r->link == NULL ||
+           put_entries(s, STATEMENT_LINK_LOADS, run, link_entries, r, e);
 }
 
 /* Half a timeline would be misread: all spans or none. */

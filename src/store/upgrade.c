@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 #include "base/beside.h"
-#include "store/rank_times.h"
 #include "store/guard.h"
 #include "store/rows.h"
+#include "store/run_entries.h"
 #include "store/upgrade_runs.h"
 
 enum { MOST_BACKUPS = 100 };
@@ -66,11 +66,15 @@ static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
 }
 
 /* "run" becomes "older_run"; a table that the old version did not have is made empty. */
+static bool put_rows_aside(struct store *s, const char *table, struct err *e)
+{
+    return !has_column(s, table, NULL) ||
+           exec_named(s, e, "ALTER TABLE \"%w\" RENAME TO \"older_%w\"", table, table);
+}
+
 static bool put_aside(struct store *s, sqlite3_stmt *row, struct err *e)
 {
-    if (!has_column(s, name_of(row), NULL)) return true;
-    return exec_named(s, e, "ALTER TABLE \"%w\" RENAME TO \"older_%w\"", name_of(row),
-                      name_of(row));
+    return put_rows_aside(s, name_of(row), e);
 }
 
 /* The columns of `table`, and what each gets: the old column of the same name, its default, or
@@ -118,6 +122,39 @@ static bool fill_table(struct store *s, sqlite3_stmt *row, struct err *e)
     return ok;
 }
 
+/* What an entry holds behind its keys; a column that the older table lacks is 0, or absent where it
+ * may be. */
+static void add_entry_columns(struct store *s, const struct entry_view *v, const char *older,
+                              struct text *sql)
+{
+    for (int i = 0; i < v->columns->n; i++) {
+        const struct column *c = &v->columns->column[i];
+        const char *otherwise = c->flags & COLUMN_NULL ? "NULL" : "0";
+        text_add(sql, ", %s", has_column(s, older, c->name) ? c->name : otherwise);
+    }
+}
+
+/* Rows of a table that is a view now become entries (run_entries.h), the same text as that of a new
+ * run, made by SQLite. */
+static bool fill_entries(struct store *s, const struct entry_view *v, struct err *e)
+{
+    struct text sql = {0}, keys = {0}, older = {0};
+    text_add(&older, "older_%s", v->view);
+    for (int i = 0; i < v->nkey; i++) text_add(&keys, "%s%s", i > 0 ? ", " : "", v->key[i]);
+    /* Two rows of one key are damage that nobody would find in a text. */
+    text_add(&sql, "CREATE UNIQUE INDEX %s_keys ON %s (run_id, %s);", older.s, older.s, keys.s);
+    text_add(&sql, "INSERT INTO %s SELECT run_id, json_group_array(json_array(%s", v->table,
+             keys.s);
+    add_entry_columns(s, v, older.s, &sql);
+    text_add(&sql, ")) FROM (SELECT * FROM %s ORDER BY run_id, %s) GROUP BY run_id; DROP TABLE %s",
+             older.s, keys.s, older.s);
+    const bool ok = !has_column(s, older.s, NULL) || store_exec(s, sql.s, e);
+    text_free(&sql);
+    text_free(&keys);
+    text_free(&older);
+    return ok;
+}
+
 /* Everything within the transaction. `fresh` is an empty database of this version: it tells what
  * there is to be. */
 static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int version, int64_t *kept,
@@ -132,16 +169,15 @@ static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int vers
                           " AND sql IS NOT NULL";
     char identity[64];
     snprintf(identity, sizeof identity, "PRAGMA user_version = %d", STORE_VERSION);
-    /* A table before version 7, a view since: it must be out of the way before views are
-     * dropped. */
-    const bool rows = has_column(s, "rank_stage", NULL);
-    if (rows && !exec_named(s, e, "ALTER TABLE rank_stage RENAME TO older_rank_stage", NULL, NULL))
-        return false;
+    /* What are views now were tables: they must be out of the way before views are dropped. */
+    bool ok = true;
+    for (int i = 0; i < ENTRY_VIEWS && ok; i++) ok = put_rows_aside(s, entry_view[i].view, e);
     /* Order: views refer to tables, so they go first and are made with the schema. */
-    return for_each(s, fresh, others, drop_object, e) && for_each(s, fresh, tables, put_aside, e) &&
-           store_exec(s, schema, e) && for_each(s, fresh, tables, fill_table, e) &&
-           (!rows || rank_times_upgrade(s, "older_rank_stage", e)) &&
-           upgrade_runs(s, version, kept, e) && store_exec(s, identity, e) &&
+    ok = ok && for_each(s, fresh, others, drop_object, e) &&
+         for_each(s, fresh, tables, put_aside, e) && store_exec(s, schema, e) &&
+         for_each(s, fresh, tables, fill_table, e);
+    for (int i = 0; i < ENTRY_VIEWS && ok; i++) ok = fill_entries(s, &entry_view[i], e);
+    return ok && upgrade_runs(s, version, kept, e) && store_exec(s, identity, e) &&
            guard_schema(s, "main", s->path, e);
 }
 

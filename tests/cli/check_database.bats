@@ -56,8 +56,8 @@ UPDATE run SET config_text = replace(config_text, '480 MB/s', '481 MB/s') WHERE 
 UPDATE run SET machine_changes = '{"node.flop_rate": "1 Mflop/s"}' WHERE id = 2#machine: machine_changes is
 UPDATE baseline SET time_ps = time_ps / 2 WHERE run_id = 2 AND ordinal = 2#prices: 'rnea+aba' takes
 DELETE FROM stage WHERE run_id = 2 AND stage = 3#numbers: of stages 0 to
-DELETE FROM link_load WHERE run_id = 2 AND link = 5#numbers: 
-UPDATE link_load SET sent_bytes = sent_bytes + 8 WHERE run_id = 2 AND sent_bytes > 0 AND from_router IS NOT NULL#links: router
+UPDATE link_loads SET entries = json_remove(entries, '$[5]') WHERE run_id = 2#numbers: 
+UPDATE link_loads SET entries = (SELECT json_set(entries, fullkey || '[5]', 8 + json_extract(value, '$[5]')) FROM json_each(entries) WHERE value ->> '$[5]' > 0 AND value ->> '$[1]' IS NOT NULL LIMIT 1) WHERE run_id = 2#links: router
 DELETE FROM run_setting WHERE run_id = 2 AND setting_id IN (SELECT id FROM setting WHERE key = 'model.n')#settings: the configuration has
 END
 }

@@ -19,7 +19,7 @@ refused() {
     tar -xJf "$attacks/large.tar.xz"
     for db in level-null-method raw-1-21 raw-2-18 report-null-scenario span-view-overflow timeline-null-status; do
         case $db in
-        level-null-method) why='UNIQUE constraint failed: link_load' ;;
+        level-null-method) why='NOT NULL constraint failed: ladder.method' ;;
         raw-1-21) why='NOT NULL constraint failed: run_setting.run_id' ;;
         raw-2-18) why='NOT NULL constraint failed: ladder.scenario' ;;
         report-null-scenario) why='cannot store BLOB value in TEXT column run.model' ;;

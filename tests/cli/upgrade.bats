@@ -12,15 +12,15 @@ old_database() {
         old_database "$version"
         sha=$(sql old.db "SELECT group_concat(digest) FROM run")
         works mimdsim query --upgrade old.db
-        stdout_is "database old.db was of version $version and is now of version 9; the old one is kept as old.db.v$version"
+        stdout_is "database old.db was of version $version and is now of version 10; the old one is kept as old.db.v$version"
         stderr_is_empty
         sql_is old.db "SELECT group_concat(digest) FROM run" "$sha"
         sql_is "old.db.v$version" "PRAGMA user_version" "$version"
         works mimdsim query old.db --upgrade
-        stdout_is "database old.db is of version 9 already"
+        stdout_is "database old.db is of version 10 already"
     done
     works mimdsim query --upgrade --json old.db
-    json_is '$.upgrade' "database old.db is of version 9 already"
+    json_is '$.upgrade' "database old.db is of version 10 already"
     works mimdsim query --upgrade old.db "SELECT count(*) AS n FROM run"
     stdout_says 2
 }
@@ -52,7 +52,7 @@ old_database() {
 @test "runs of a version-4 database are found again: nothing is repeated, new runs stand beside them" {
     old_database 4
     works mimdsim run small.yaml -o old.db
-    stderr_says "was of version 4 and is now of version 9; the old one is kept as old.db.v4"
+    stderr_says "was of version 4 and is now of version 10; the old one is kept as old.db.v4"
     sql_is old.db "SELECT count(*), count(DISTINCT build_id) FROM run" '6|1'
     works mimdsim run small.yaml -o old.db --set n=5 --quiet
     sql_is old.db "SELECT count(*), count(DISTINCT build_id) FROM run" '8|2'

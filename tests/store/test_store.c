@@ -321,6 +321,11 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
     assert_int_equal(number(f, "SELECT count(*) FROM link_load"), 16384);
     assert_int_equal(number(f, "SELECT min(queue_ps) FROM link_load"), 20000 - 16384);
     assert_int_equal(number(f, "SELECT links FROM run"), 20000);
+    assert_int_equal(
+        number(f, "SELECT (SELECT entries FROM link_loads) = (SELECT "
+                  "json_group_array(json_array(link, from_router, to_router, node, messages, "
+                  "sent_bytes, busy_ps, queue_ps)) FROM (SELECT * FROM link_load ORDER BY link))"),
+        1);
     assert_string_equal(
         cell(f, "SELECT to_router IS NULL AND node = 50 FROM link_load WHERE link = 50"), "1");
     assert_int_equal(number(f, "SELECT count(*) FROM span"), r.nspan);
@@ -342,7 +347,7 @@ static void every_view_answers_on_an_empty_database(void **state)
                                        "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
                                        "v_provenance", "v_link_top", "v_repetition",
                                        "v_machine_state",
-                                       "v_shown", "rank_stage", "v_label", "v_run",
+                                       "v_shown", "rank_stage", "link_load", "v_label", "v_run",
                                        "v_known_error"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];

@@ -101,26 +101,45 @@ static const char sums_of_ranks[] =
     "sum(stage * sent_bytes) || ' ' || sum(rank * flops) AS x FROM rank_stage GROUP BY run_id "
     "ORDER BY run_id)";
 
+static const char sums_of_links[] =
+    "SELECT group_concat(x, ';') FROM (SELECT run_id || ' ' || count(*) || ' ' || sum(link * link) "
+    "|| ' ' || sum(link * ifnull(from_router, 77)) || ' ' || sum(link * ifnull(to_router, 77)) || "
+    "' ' || sum(link * ifnull(node, 77)) || ' ' || sum(link * messages) || ' ' || sum(link * "
+    "sent_bytes) || ' ' || sum(link * busy_ps) || ' ' || sum(link * queue_ps) AS x FROM link_load "
+    "GROUP BY run_id ORDER BY run_id)";
+
+/* Ports and links of two runs, not in the order of their numbers. */
+static const char some_links[] =
+    "INSERT INTO link_load (run_id, link, from_router, to_router, node, messages, sent_bytes, "
+    "busy_ps, queue_ps) VALUES (2, 2, 0, 1, NULL, 5, 40, 600, 0), (2, 0, NULL, 0, 0, 7, 56, 840, "
+    "9223372036854775), (1, 9, 1, NULL, 1, 1, 8, 120, 3), (2, 1, NULL, 1, 1, 0, 0, 0, 0)";
+
 static void nothing_is_lost(void **state)
 {
     struct fixture *f = *state;
     for (int version = 4; version <= 5; version++) {
         char runs[4096], count[4096];
         make_old(f, version);
+        sql(f->path, some_links);
         snprintf(runs, sizeof runs, "%s", value(f->path, rows_of_runs));
         snprintf(count, sizeof count, "%s", value(f->path, count_of_rows));
         struct store *s = open_or_fail(f, STORE_WRITE);
         assert_non_null(store_remark(s));
         assert_non_null(strstr(store_remark(s), f->kept));
         store_close(s);
-        is(f->path, "PRAGMA user_version", "9");
+        is(f->path, "PRAGMA user_version", "10");
         is(f->path, rows_of_runs, runs);
         is(f->path, count_of_rows, count);
         /* Rows of ranks, now entries of one text a run, keep every value. */
         char ranks[4096];
         snprintf(ranks, sizeof ranks, "%s", value(f->kept, sums_of_ranks));
         is(f->path, sums_of_ranks, ranks);
-        is(f->path, "SELECT type FROM sqlite_schema WHERE name = 'rank_stage'", "view");
+        char links[4096];
+        snprintf(links, sizeof links, "%s", value(f->kept, sums_of_links));
+        is(f->path, sums_of_links, links);
+        is(f->path, "SELECT entries FROM link_loads WHERE run_id = 1", "[[9,1,null,1,1,8,120,3]]");
+        is(f->path, "SELECT group_concat(type) FROM sqlite_schema WHERE name IN ('rank_stage', "
+                    "'link_load')", "view,view");
         is(f->path, "PRAGMA integrity_check", "ok");
         is(f->path, "SELECT count(*) FROM pragma_foreign_key_check", "0");
         is(f->path, "SELECT count(*) FROM sqlite_schema WHERE name LIKE 'older%'", "0");
@@ -311,7 +330,7 @@ static void versions_before_the_oldest_are_refused_with_a_way_out(void **state)
     assert_null(store_open(f->path, STORE_READ, &f->e));
     assert_non_null(strstr(
         f->e.text,
-        "has schema version 3, this program knows versions 4 to 9; run its scenarios again"));
+        "has schema version 3, this program knows versions 4 to 10; run its scenarios again"));
 }
 
 /* Upgrade in a child that is killed after `delay` seconds; whether it had ended before. */
@@ -345,7 +364,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
     for (int i = 0; i < 60 || (i < 600 && (old <= 10 || new <= 10)); i++) {
         make_old(f, 4);
         whole += upgrade_and_kill(f, random_uniform(&random, 0, once));
-        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "9") == 0;
+        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "10") == 0;
         upgraded ? new ++ : old++;
         if (!upgraded) is(f->path, "PRAGMA user_version", "4");
         is(f->path, "PRAGMA integrity_check", "ok");
@@ -360,7 +379,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
         /* The next one who comes finishes it. */
         if (i % 8) continue;
         store_close(open_or_fail(f, STORE_WRITE));
-        is(f->path, "PRAGMA user_version", "9");
+        is(f->path, "PRAGMA user_version", "10");
         is(f->path, rows_of_runs, runs);
     }
     print_message("%d old, %d new, %d not killed\n", old, new, whole);

@@ -59,8 +59,8 @@ static void change(struct store *s, const char *sql)
     if (!store_select(s, sql, 0, NULL, NULL, NULL, &e)) fail_msg("%s: %s", sql, e.text);
 }
 
-/* View rank_stage shows entries of a text: what is written to the view is written there, for this
- * connection. */
+/* Views rank_stage and link_load show entries of a text: what is written to a view is written
+ * there, for this connection. */
 static const char *const writable_view[] = {
     "CREATE TEMP TRIGGER rank_delete INSTEAD OF DELETE ON main.rank_stage BEGIN UPDATE rank_times "
     "SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries) WHERE "
@@ -71,7 +71,17 @@ static const char *const writable_view[] = {
     "json_extract(value, '$[0]') IS NOT OLD.rank OR json_extract(value, '$[1]') IS NOT OLD.stage) "
     "WHERE run_id = OLD.run_id; UPDATE rank_times SET entries = json_insert(entries, '$[#]', "
     "json_array(NEW.rank, NEW.stage, NEW.compute_ps, NEW.send_ps, NEW.recv_ps, NEW.wait_ps, "
-    "NEW.contention_ps, NEW.messages, NEW.sent_bytes, NEW.flops)) WHERE run_id = NEW.run_id; END"};
+    "NEW.contention_ps, NEW.messages, NEW.sent_bytes, NEW.flops)) WHERE run_id = NEW.run_id; END",
+    "CREATE TEMP TRIGGER link_delete INSTEAD OF DELETE ON main.link_load BEGIN UPDATE link_loads "
+    "SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries) WHERE "
+    "json_extract(value, '$[0]') IS NOT OLD.link) WHERE run_id = OLD.run_id; END",
+    "CREATE TEMP TRIGGER link_update INSTEAD OF UPDATE ON main.link_load BEGIN UPDATE link_loads "
+    "SET entries = (SELECT json_group_array(json(value)) FROM json_each(entries) WHERE "
+    "json_extract(value, '$[0]') IS NOT OLD.link) WHERE run_id = OLD.run_id; UPDATE link_loads SET "
+    "entries = json_insert(entries, '$[#]', json_array(NEW.link, NEW.from_router, NEW.to_router, "
+    "NEW.node, NEW.messages, NEW.sent_bytes, NEW.busy_ps, NEW.queue_ps)) WHERE run_id = "
+    "NEW.run_id; END"};
+enum { WRITABLE_VIEWS = sizeof writable_view / sizeof *writable_view };
 
 static struct store *make_database(struct scratch *dir)
 {
@@ -85,7 +95,7 @@ static struct store *make_database(struct scratch *dir)
     add_runs(s, dir, "small.yaml", scenario);
     add_runs(s, dir, "noisy.yaml", noisy);
     add_runs(s, dir, "blocked.yaml", blocked);
-    for (int i = 0; i < 2; i++) change(s, writable_view[i]);
+    for (int i = 0; i < WRITABLE_VIEWS; i++) change(s, writable_view[i]);
     change(s, "INSERT INTO check_point (suite, subject, quantity, at, unit, reference, value, "
               "relative_error, tolerance, class, verdict, source, cause) VALUES ('s', 'm', "
               "'one-way', '8', 'us', 10, 10.5, 0.05, 0.1, 'P', 'pass', 'x', ''), ('s', 'm', "
