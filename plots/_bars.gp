@@ -64,8 +64,8 @@ do for [format in formats] {
                 with boxxyerror fillcolor rgb colour[turn(k)] linewidth 0.3 notitle, \
              for [k=1:curves] data using (column("rows") > 1 ? of(m, k, column("value")*vscale) : NaN):(y_of(column("xi"), k)):(column("low")*vscale):(column("high")*vscale) \
                 with xerrorbars linewidth 1 pointsize 0 linecolor rgb "#303030" notitle, \
-             for [k=1:curves] data using (of(m, k, (column("high") > column("value") ? column("high") : column("value"))*vscale)):(y_of(column("xi"), k)):(sprintf("  %.4g", column("value")*vscale)) \
-                with labels left noenhanced font tiny notitle, \
+             for [k=1:curves] data using (of(m, k, (column("high") > column("value") ? column("high") : column("value"))*vscale)):(y_of(column("xi"), k)):(sprintf("%.4g", column("value")*vscale)) \
+                with labels left offset 0.6,0 noenhanced font tiny notitle, \
              figure.".x.csv" using (base):"xi":yticlabels(strcol("x_text")) with points pointsize 0 notitle
     }
     unset multiplot

@@ -30,7 +30,7 @@ y_of(p, s) = p + (s - 0.5*(sides + 1))*bar_high/group_high + 7/group_high
 thick = 0.40*bar_high/group_high
 part(v) = shares ? v/column("makespan_s")*100 : v*scale
 array fill[4] = [compute_colour, send_colour, wait_colour, contention_colour]
-array part_name[4] = ["computing", "sending and receiving", "waiting", "contention"]
+array part_name[4] = ["computing", "sending, receiving", "waiting", "contention"]
 from(k) = part((k > 1 ? column("compute_s") : 0) + (k > 2 ? column("overhead_s") : 0) + (k > 3 ? column("wait_s") : 0))
 upto(k) = from(k) + part(k == 1 ? column("compute_s") : (k == 2 ? column("overhead_s") : (k == 3 ? column("wait_s") : column("contention_s"))))
 
@@ -66,15 +66,15 @@ do for [format in formats] {
     if (shares) { set xtics nomirror out scale 0.6 0,20,100 offset 0,tick_lift(format) } \
     else { set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format) }
     unset ytics
-    set key at screen 0.5,at_y(upper + lines_high + 6) center top horizontal maxcols 4 samplen 2
+    set key at screen 0.5,at_y(upper + lines_high + 6) center top horizontal maxcols 4 samplen 1.2 width -1
     plot for [k=1:4] data using (bar(from(k))):(y_of(column("place"), column("side"))):(from(k)):(upto(k)):(y_of(column("place"), column("side")) - thick):(y_of(column("place"), column("side")) + thick) \
             with boxxyerror fillcolor rgb fill[k] linewidth 0.4 notitle, \
          for [k=1:4] keyentry with boxes fillcolor rgb fill[k] title part_name[k], \
-         data using (bar(part(column("makespan_s")))):(y_of(column("place"), column("side"))):(sprintf("  %.4g %s", column("makespan_s")*scale, unit).(column("side") > 1 ? sprintf("  (%.3g)", column("ratio")) : "")) \
-            with labels left noenhanced font tiny notitle, \
-         data using (bar(0)):(y_of(column("place"), column("side"))):(strcol("name")." ") with labels right noenhanced font tiny notitle, \
-         data using (column("bar") > 0 && column("side") == 1 ? 0 : NaN):(column("place") - 0.5 + 11/group_high):(" ".strcol("point")) \
-            with labels left noenhanced font tiny textcolor rgb grey notitle
+         data using (bar(part(column("makespan_s")))):(y_of(column("place"), column("side"))):(sprintf("%.4g %s", column("makespan_s")*scale, unit).(column("side") > 1 ? sprintf("  (%.3g)", column("ratio")) : "")) \
+            with labels left offset 0.6,0 noenhanced font tiny notitle, \
+         data using (bar(0)):(y_of(column("place"), column("side"))):(strcol("name")) with labels right offset -0.6,0 noenhanced font tiny notitle, \
+         data using (column("bar") > 0 && column("side") == 1 ? 0 : NaN):(column("place") - 0.5 + 11/group_high):(strcol("point")) \
+            with labels left offset 0.6,0 noenhanced font tiny textcolor rgb grey notitle
     unset multiplot
     unset output
 }

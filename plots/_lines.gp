@@ -17,6 +17,18 @@ stats data using (column("high")*vscale) nooutput
 if (band) { vmax = STATS_max > vmax ? STATS_max : vmax }
 stats data using (at_x(column("xi"), column("x"))) nooutput
 xmin = STATS_min; xmax = STATS_max
+# how many letters the longest number beside the vertical axis has: what it is called stands left of it, and where it had
+# no room gnuplot would leave it out
+letters = 1
+if (vlog > 0) {
+    do for [k=floor(log(vmin)/log(vlog)):ceil(log(vmax)/log(vlog))] {
+        k_letters = strlen(sprintf("%.6g", (1.0*vlog)**k)); letters = k_letters > letters ? k_letters : letters
+    }
+} else {
+    size = abs(vmax) > abs(vmin) ? abs(vmax) : abs(vmin); step = (vmin > 0 ? vmax : vmax - vmin)/10
+    letters = (size >= 1 ? floor(log10(size)) + 1 : 1) + (step > 0 && step < 1 ? 1 + ceil(-log10(step)) : 0) + (vmin < 0)
+}
+left_px = 72 + (letters > 4 ? 8*(letters - 4) : 0)
 # no legend for a single curve without a name
 legend = curves > 1 || strlen(name[1]) > 0
 columns = panels == 1 ? 1 : (panels <= 4 ? 2 : 3)
@@ -57,14 +69,17 @@ do for [format in formats] {
     set yrange [(vlog > 0 ? pad_low(vmin, vlog) : (vmin > 0 ? 0 : vmin - 0.05*(vmax - vmin))):(vlog > 0 ? pad_high(vmax, vlog) : vmax + 0.05*(vmax - vmin) + (vmax == vmin))]
     set format x "%.6g"; set format y "%.6g"
     set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format); set ytics nomirror out scale 0.6 autofreq
-    if (xlog == 2 && xmax >= 1e5) { set format x "%.0b%B" } # 512, 8Ki, 2Mi: tics are powers of two
     if (xlog > 0 && x_number) { # so many labels as have room
-        apart = xlog**ceil(log(xmax/xmin)/log(xlog)/(columns == 1 ? 9.0 : 4.0))
-        if (apart > xlog) { set xtics xlog**floor(log(xmin)/log(xlog)),apart }
+        powers = ceil(log(xmax/xmin)/log(xlog)/(columns == 1 ? 9.0 : 4.0))
+        if (powers > 1) { set xtics xlog**floor(log(xmin)/log(xlog)),xlog**powers }
+        if (xlog == 2 && xmax >= 1e5) {
+            set xtics ()
+            do for [k=floor(log(xmin)/log(2) + 1e-9):ceil(log(xmax)/log(2)):(powers > 1 ? powers : 1)] { set xtics add (ki(2.0**k) 2.0**k) }
+        }
     }
     do for [m=1:panels] {
         c = (m - 1) % columns; r = (m - 1)/columns
-        left = 0.09*800.0/wide + c*(0.985 - 0.02)/columns
+        left = left_px/wide + c*(0.985 - 0.02)/columns
         set lmargin at screen left
         set rmargin at screen (columns == 1 ? 0.975 : left + 0.985/columns - 0.075)
         set tmargin at screen at_y(upper + r*panel_high + 6); set bmargin at screen at_y(upper + (r + 1)*panel_high - (panels > 1 ? 82 : 48))

@@ -28,7 +28,7 @@ rows = ceil((last + 2)/3.0)
 
 set samples 200
 do for [format in formats] {
-    high = (76 + 24*rows) + 300.0*lines + 44
+    high = (76 + 24*rows) + 318.0*lines + 44
     page_wide = 900; page_high = int(high)
     if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
     else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
@@ -57,7 +57,7 @@ do for [format in formats] {
     do for [m=1:panels] {
         left = m % 2 == 1; line = int((m + 1)/2)
         set lmargin at screen (left ? 0.1 : 0.59); set rmargin at screen (left ? 0.49 : 0.985)
-        set tmargin at screen 1.0 - ((76 + 24*rows) + 300*(line - 1) + 24)/high; set bmargin at screen 1.0 - ((76 + 24*rows) + 300*line - 42)/high
+        set tmargin at screen 1.0 - ((76 + 24*rows) + 318*(line - 1) + 24)/high; set bmargin at screen 1.0 - ((76 + 24*rows) + 318*line - 58)/high
         set xrange [pmin[line]*0.94:pmax[line]*1.06]; set yrange [smin[line]*0.8:smax[line]*1.3]
         set ylabel (left ? "speedup S" : "")
         set title machine[m].(most[m] < pmax[line] ? sprintf(", %d processors at most", most[m]) : "") noenhanced offset 0,-0.7

@@ -20,7 +20,7 @@ is(kind, v) = strcol("kind") eq kind ? v : NaN
 
 unset grid; set grid xtics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
 do for [format in formats] {
-    page_wide = 800; page_high = int(240 + 70*(last + 1))
+    page_wide = 800; page_high = int(252 + 70*(last + 1))
     if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
     else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
@@ -31,10 +31,10 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.925 center noenhanced textcolor rgb grey
     set label 99 foot(provenance, page_wide) at screen 0.99,(0.012 + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
-    set key at screen 0.53,0.898 center top horizontal maxrows 1 samplen 1.2 width -1
+    set key at screen 0.53,0.898 center top horizontal maxrows 1 samplen 1.2 width 0
     plot NaN, for [j=1:5] keyentry with boxes linewidth 0.6 fillcolor rgb kind_colour[j] title kind_name[j]
     unset label 97; unset label 98; unset label 99
-    set key at screen 0.53,0.858 center top horizontal maxrows 1 samplen 1 width -2
+    set key at screen 0.53,0.858 center top horizontal maxrows 2 samplen 1 width -1
     plot NaN, for [j=1:stages+1] keyentry with boxes linewidth 0.3 fillcolor rgb stage_colour[j] title stage_name[j]
     unset key
     set border 1

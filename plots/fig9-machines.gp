@@ -24,7 +24,7 @@ first = 1
 
 set samples 200
 do for [format in formats] {
-    high = 88 + 300.0*lines + 44
+    high = 114 + 318.0*lines + 44
     page_wide = 900; page_high = int(high)
     if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
     else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
@@ -36,10 +36,10 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,(1.0 - 18/high) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 42/high) center noenhanced textcolor rgb grey
     set label 99 foot(provenance, page_wide) at screen 0.99,(8/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
-    set key at screen 0.53,(1.0 - 56/high) center top horizontal maxrows 1 samplen 3 width -3
-    plot NaN, keyentry with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
-         for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype point[turn(k)] pointsize 0.8 \
-            linecolor rgb colour[turn(k)] title sprintf("n/P = %d", ratio[k])
+    set key at screen 0.53,(1.0 - 56/high) center top horizontal maxrows 2 samplen 3 width 0
+    plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype point[turn(k)] pointsize 0.8 \
+            linecolor rgb colour[turn(k)] title sprintf("n/P = %d", ratio[k]), \
+         keyentry with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P"
     unset key; unset label 97; unset label 98; unset label 99
     set border 3
     set logscale x 2; set logscale y 2
@@ -51,7 +51,7 @@ do for [format in formats] {
     do for [m=1:panels] {
         left = m % 2 == 1; line = int((m + 1)/2)
         set lmargin at screen (left ? 0.1 : 0.59); set rmargin at screen (left ? 0.49 : 0.985)
-        set tmargin at screen 1.0 - (88 + 300*(line - 1) + 24)/high; set bmargin at screen 1.0 - (88 + 300*line - 42)/high
+        set tmargin at screen 1.0 - (114 + 318*(line - 1) + 24)/high; set bmargin at screen 1.0 - (114 + 318*line - 58)/high
         set xrange [pmin[line]*0.94:pmax[line]*1.06]; set yrange [smin[line]*0.8:smax[line]*1.3]
         set ylabel (left ? "speedup S" : "")
         set title machine[m].(most[m] < pmax[line] ? sprintf(", %d processors at most", most[m]) : "") noenhanced offset 0,-0.7

@@ -28,14 +28,14 @@ do for [format in formats] {
     set lmargin at screen 0.685; set rmargin at screen 0.985; set tmargin at screen 0.83
     set xrange [0:100]; set yrange [parts + 0.6:0.4]
     set ytics scale 0 font tiny noenhanced; unset ylabel; set xlabel "share of the time of all ranks and messages [%]" offset 0,name_lift(format)
-    set key at screen 0.985,0.885 right top horizontal samplen 1 width (format eq "png" ? -3 : -6) font tiny maxrows 1 maxcols 3
+    set key at screen 0.99,0.885 right top horizontal samplen 1 width (format eq "png" ? -1 : -2) font tiny maxrows 1 maxcols 3
     set boxwidth 0.7
     plot data using (of(2) ? column("critical")/2 : NaN):"x":(column("critical")/2):(0.34) with boxxyerror linewidth 0.3 \
             fillcolor rgb contention_colour title "critical", \
          data using (of(2) ? column("critical") + column("near")/2 : NaN):"x":(column("near")/2):(0.34) with boxxyerror linewidth 0.3 \
             fillcolor rgb send_colour title "nearly", \
          data using (of(2) ? 100 - column("rest")/2 : NaN):"x":(column("rest")/2):(0.34) with boxxyerror linewidth 0.3 \
-            fillcolor rgb wait_colour title "has more slack", \
+            fillcolor rgb wait_colour title "more slack", \
          data using (of(2) ? 0 : NaN):"x":ytic(strcol("what")) with points pointtype 0 notitle
     unset key; unset ytics; set ytics auto nomirror out scale 0.6
     unset multiplot

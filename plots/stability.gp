@@ -73,7 +73,7 @@ do for [format in formats] {
              for [j=0:3] cases using (0.42):(column("y") - 0.33 + 0.22*j):(word("error step evaluations energy", j + 1)) with labels right noenhanced font tiny textcolor rgb grey
     } else {
         do for [i=1:columns] { set label 10+i algorithm[i] at first i,graph 1.0 left rotate by 55 noenhanced font tiny offset 0,0.4 }
-        do for [i=1:4] { set label 50+i info_name[i] at first beyond(46*i - 32),graph 1.0 left rotate by 55 noenhanced font tiny offset 0,0.4 textcolor rgb grey }
+        do for [i=1:4] { set label 50+i info_name[i] at first beyond(46*i - 26),graph 1.0 left rotate by 55 noenhanced font tiny offset 0,0.4 textcolor rgb grey }
         plot for [j=0:2] data using (is(j) ? column("x") : NaN):"y":(0.48):(0.47) with boxxyerror linewidth 0.3 \
                 fillcolor rgb grade_colour[j+1] title grade_name[j+1], \
              for [j=0:2] data using (is(j) ? column("x") : NaN):"y":(stringcolumn("decade")) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \

@@ -58,6 +58,10 @@ band = "#d0d0d0"
 grey = "#666666"
 pale = "#b8b8b8"
 
+# A power of two as sizes are written: 512, 8Ki, 2Mi. (gnuplot's own %B says "ki".)
+ki(v) = v < 1024 ? sprintf("%g", v) : v < 2.0**20 ? sprintf("%gKi", v/1024) : \
+    v < 2.0**30 ? sprintf("%gMi", v/2.0**20) : v < 2.0**40 ? sprintf("%gGi", v/2.0**30) : sprintf("%gTi", v/2.0**40)
+
 # One bar part of a stage: computing dark, waiting light, so that the order shows in grey too.
 compute_colour = "#0f4c9c"
 send_colour = "#d9a21b"

@@ -159,6 +159,19 @@ static bool table_make(struct table *t, const struct plan *p, struct store *s, s
 
 /* ---- clauses ---- */
 
+/* What the goal is called on an axis: as the file says, or the formula. */
+static const char *goal_name(const struct plan_answer *a)
+{
+    return a->called != NULL ? a->called : expression_text(a->goal);
+}
+
+/* The same in a sentence, where its unit in brackets has no place. */
+static void add_goal(const struct plan_answer *a, struct text *out)
+{
+    const char *name = goal_name(a), *unit = strstr(name, " [");
+    text_add_bytes(out, name, unit != NULL ? (size_t)(unit - name) : strlen(name));
+}
+
 /* How many times worse x is than `than`; 1: the same. */
 static double worse(const struct table *t, double x, double than)
 {
@@ -285,9 +298,10 @@ static void add_best(const struct table *t, struct text *out)
         /* a line without any result says nothing */
         if (best < 0) continue;
         text_add(out, "%s'%s'", told ? ", " : "", t->of[best].text);
-        if (told == 0)
-            text_add(out, " has the %s %s", t->asked->greatest ? "greatest" : "least",
-                     expression_text(t->asked->goal));
+        if (told == 0) {
+            text_add(out, " has the %s ", t->asked->greatest ? "greatest" : "least");
+            add_goal(t->asked, out);
+        }
         add_range(t, i, end - 1, out);
         add_next(t, i, end, best, told++ == 0, out);
     }
@@ -307,10 +321,12 @@ static void add_against(const struct table *t, struct text *out)
             most = fmax(most, ratio);
         }
         if (k == t->against || most <= 0) continue;
-        if (told++ == 0)
-            text_add(out, "%sagainst '%s' %s is ", out->length > 0 ? "; " : "",
-                     t->of[t->against].text, expression_text(t->asked->goal));
-        else text_add(out, ", ");
+        text_add(out, "%s", told > 0 ? ", " : out->length > 0 ? "; " : "");
+        if (told++ == 0) {
+            text_add(out, "against '%s' ", t->of[t->against].text);
+            add_goal(t->asked, out);
+            text_add(out, " is ");
+        }
         add_times(least, most, out);
         text_add(out, " with '%s'", t->of[k].text);
     }
@@ -377,13 +393,16 @@ bool answer_sentence(const struct plan *p, struct store *s, struct text *out, st
 
 /* ---- picture ---- */
 
-/* A column's name: the word without signs, and what says its unit (plot_sheet.c). */
-static void add_name(const char *word, enum unit unit, struct text *out)
+/* A column's name: a plain word, and what says its unit (plot_sheet.c), so that the axis is called
+ * as in other figures; what is no plain word stands on the axis, beside a column `otherwise`. */
+static struct plot_axis_name add_name(const char *word, const char *otherwise, enum unit unit,
+                                      struct text *sql)
 {
-    for (const char *c = word; *c != '\0'; c++)
-        text_add(out, "%c", isalnum((unsigned char)*c) ? *c : '_');
-    if (unit == UNIT_TIME) text_add(out, "_s");
-    if (unit == UNIT_BYTES) text_add(out, "_bytes");
+    bool plain = true;
+    for (const char *c = word; *c != '\0'; c++) plain = plain && isalnum((unsigned char)*c);
+    text_add(sql, "%s%s", plain ? word : otherwise, plain && unit == UNIT_TIME ? "_s" : "");
+    /* A product of units that has no name has no unit on an axis either. */
+    return (struct plot_axis_name){plain ? NULL : word, unit == UNIT_KINDS ? UNIT_NONE : unit};
 }
 
 /* Whether the axis is what is chosen: without `over`, or where that is a number with more values
@@ -413,11 +432,16 @@ static bool fill(const struct table *t, struct store *s, bool *numbers, struct e
         const struct mark *m = along ? &t->of[of] : &t->over[over],
                           *curve = along ? &t->over[over] : &t->of[of];
         if (isnan(value_at(t, over, of))) continue;
+        /* "n 256": a number alone does not say of what. */
+        struct text name = {0};
+        const char *word = along ? t->asked->over_word : t->asked->of_word;
+        const bool bare = isfinite(curve->number) && curve->unit == UNIT_NONE;
+        text_add(&name, "%s%s%s", bare ? last_words(word) : "", bare ? " " : "", curve->text);
         const struct store_value row[] = {store_int(cell_at(t, over, of)->id),
                                           *numbers ? store_real(m->number) : store_text(m->text),
-                                          store_text(curve->text),
-                                          store_real(value_at(t, over, of))};
+                                          store_text(name.s), store_real(value_at(t, over, of))};
         ok = store_temporary_row(s, "answer_cell", 4, row, e);
+        text_free(&name);
     }
     return ok;
 }
@@ -426,7 +450,7 @@ bool answer_draw(const struct plan *p, struct store *s, const char *dir, struct 
 {
     struct arena *a = arena_create();
     struct table t;
-    struct text sql = {0}, told = {0}, by = {0};
+    struct text sql = {0}, told = {0};
     /* The same table again: it is small, and the sentence needs no picture. */
     bool numbers, ok = table_make(&t, p, s, a, e) && fill(&t, s, &numbers, e);
     if (ok) {
@@ -437,20 +461,21 @@ bool answer_draw(const struct plan *p, struct store *s, const char *dir, struct 
                                                     : p->answer->of_word;
         /* Names of columns are made of letters and digits: no text of a file gets into the query,
          * and what stands in the table is bound. */
+        struct plot_request r = {.by = *curve ? "curve" : "", .title = p->question, .as = p->name};
         text_add(&sql, "SELECT run_id, x AS \"");
-        add_name(last_words(axis), numbers ? (along ? t.of : t.over)->unit : UNIT_NONE, &sql);
+        r.x_name = add_name(last_words(axis), "x",
+                            numbers ? (along ? t.of : t.over)->unit : UNIT_NONE, &sql);
         text_add(&sql, "\", value AS \"");
-        add_name(expression_text(p->answer->goal), t.unit, &sql);
-        text_add(&sql, "\", curve AS \"");
-        add_name(*curve ? last_words(curve) : "curve", UNIT_NONE, &by);
-        text_add(&sql, "%s\" FROM answer_cell ORDER BY rowid", by.s);
-        const struct plot_request r = {
-            .query = sql.s, .by = *curve ? by.s : "", .title = p->question, .as = p->name};
+        /* A name with a unit of its own has said it. */
+        const char *goal = goal_name(p->answer);
+        r.value_name =
+            add_name(goal, "value", strstr(goal, " [") != NULL ? UNIT_NONE : t.unit, &sql);
+        text_add(&sql, "\", curve FROM answer_cell ORDER BY rowid");
+        r.query = sql.s;
         ok = plot_draw(s, plan_data_dir(), &r, dir, &told, e);
     }
     text_free(&sql);
     text_free(&told);
-    text_free(&by);
     arena_destroy(a);
     return ok;
 }

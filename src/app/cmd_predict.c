@@ -19,9 +19,8 @@
 #include "spec/task.h"
 
 static const char doc[] =
-    "Compare the measured runs of SCENARIO in the database with what the machine of the scenario, "
-    "or "
-    "--machine, predicts.\n\n"
+    "Compare the measured runs of SCENARIO in the database with what --machine predicts, or the "
+    "scenario's machine where that is a file of your own.\n\n"
     "Example: mimdsim predict speedup-t3e --set ranks=2 --set n=16,64 -m my-host.yaml\n"
     "\vMeasured are the rows that mimdsim run --backend mpi has stored; of each task the latest. "
     "The "
@@ -53,6 +52,7 @@ struct summary {
     bool stages;
     double error[MOST_ROWS]; /* (n) of those that count, by size */
     int n, shown, missing;
+    char machines[256]; /* told last: which machine predicts, and what was measured */
     struct json json;
 };
 
@@ -137,12 +137,30 @@ static void print_stages(const struct prediction *p)
     }
 }
 
+/* What a run is predicted on, as tables and figures call it. */
+static const char *machine_of(const struct run_spec *spec)
+{
+    return spec->called != NULL && spec->called[0] != '\0' ? spec->called : spec->machine.name;
+}
+
+/* Which machine predicts and which computer was measured, before the first row and wherever one of
+ * them changes: they are two, and may be meant to be one. */
+static void print_machines(struct summary *s, const struct run_spec *spec, const struct measured *m)
+{
+    char now[sizeof s->machines];
+    snprintf(now, sizeof now, "predicted on %s, measured on %s", machine_of(spec), m->host);
+    if (strcmp(now, s->machines) == 0) return;
+    text_copy(s->machines, sizeof s->machines, now);
+    printf("%s\n", now);
+}
+
 /* The title comes with the first row, so that an empty answer is only its message. The load is that
  * of the measurement: a difference that is due to other programs is not the model's. */
 static void print_row(struct summary *s, const struct run_spec *spec, const struct measured *m,
                       const struct prediction *p)
 {
     char why[48] = "-", load[24] = "-";
+    print_machines(s, spec, m);
     if (s->shown == 0)
         printf("%-18s %6s %4s %12s %12s %8s %6s  %-34s %s\n", "program", "n", "P", "measured_us",
                "predicted_us", "error_%", "load", "explained by", "stage");
@@ -173,6 +191,7 @@ static void print_json(struct summary *s, const struct run_spec *spec, const str
     json_key_text(j, "host", m->host);
     json_key_real(j, "load_before", m->real.load.before);
     json_key_real(j, "load_others", m->real.load.others);
+    json_key_text(j, "machine", machine_of(spec));
     json_key_real(j, "measured_s", p->measured);
     json_key_int(j, "n", spec->model.nbody);
     json_key_real(j, "predicted_s", p->predicted);
@@ -223,6 +242,22 @@ static bool is_first(const struct plan *p, const struct run_spec *task, int i)
     return true;
 }
 
+/* A shipped machine is never the computer at hand. Who means to compare with one says so; who
+ * forgot the machine file of this computer would take the difference for an error of the model. */
+static bool check_machine(const struct summary *s, const struct run_spec *run,
+                          const struct measured *m, struct err *e)
+{
+    bool named = s->c->machine != NULL || run->machine_changes == NULL;
+    for (int i = 0; i < s->c->nset; i++)
+        named = named || strncmp(s->c->set[i], "machine=", 8) == 0;
+    return named ||
+           err_set(e, ERR_USAGE,
+                   "the runs were measured on %s, and %s is another machine: name the machine file "
+                   "of %s with --machine (mpirun -n 2 mimdsim calibrate writes one), or say "
+                   "--machine %s to compare with that",
+                   m->host, run->machine.name, m->host, run->machine.name);
+}
+
 /* A task that nobody measured costs nothing; one that was is simulated a dozen times (predict.c).
  */
 static bool predict_one(struct summary *s, const struct run_spec *run, const struct run_spec *task,
@@ -235,7 +270,7 @@ static bool predict_one(struct summary *s, const struct run_spec *run, const str
         s->missing++;
         return true;
     }
-    if (!predict_run(run, &m.real, cache, &p, e)) return false;
+    if (!check_machine(s, run, &m, e) || !predict_run(run, &m.real, cache, &p, e)) return false;
     if (s->c->json) print_json(s, run, &m, &p);
     else print_row(s, run, &m, &p);
     s->shown++;

@@ -58,23 +58,29 @@ static bool read_key(struct reading *r, const struct node *n, const char **key, 
 /* One key of the mapping, or the nearest that there is. */
 static bool read_entry(struct reading *r, const struct node *n)
 {
-    static const char *const known[] = {"of", "over", "least", "greatest", "against", "within"};
+    static const char *const known[] = {"of",      "over",   "least", "greatest",
+                                        "against", "within", "called"};
     enum { KNOWN = sizeof known / sizeof *known };
     if (strcmp(n->key, "of") == 0) return read_key(r, n, &r->answer->of, &r->answer->of_word);
     if (strcmp(n->key, "over") == 0) return read_key(r, n, &r->answer->over, &r->answer->over_word);
     if (strcmp(n->key, "least") == 0 || strcmp(n->key, "greatest") == 0) return read_goal(r, n);
     if (strcmp(n->key, "within") == 0) return read_within(r, n);
+    if (strcmp(n->key, "called") == 0) {
+        r->answer->called = n->text;
+        return (n->text != NULL && n->text[0] != '\0') || refuse(r, n, "expected a text");
+    }
     if (strcmp(n->key, "against") == 0) {
         r->answer->against = n->text;
         /* Whether some run has it is known when all runs are. */
         return n->text != NULL || refuse(r, n, "expected one value of 'of'");
     }
     /* A key that is none of these: the nearest, or all that there are. */
+    static const char all[] = "expected of, over, least, greatest, called, against, within";
     const char *near = text_nearest(n->key, known, KNOWN);
-    return err_set_at(
-        r->err, ERR_DATA, r->scenario->path, n->line, "answer: unknown key '%.80s'; %s%s%s", n->key,
-        near != NULL ? "did you mean '" : "expected of, over, least, greatest, against, within",
-        near != NULL ? near : "", near != NULL ? "'?" : "");
+    return err_set_at(r->err, ERR_DATA, r->scenario->path, n->line,
+                      "answer: unknown key '%.80s'; %s%s%s", n->key,
+                      near != NULL ? "did you mean '" : all, near != NULL ? near : "",
+                      near != NULL ? "'?" : "");
 }
 
 bool answer_file_read(struct scenario *s, const struct node *n, struct arena *a, struct err *e)

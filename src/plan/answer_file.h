@@ -5,6 +5,7 @@
  *       of: variant             # what is chosen: a key of the sweep, or its variants
  *       over: n                 # optional: a key of the sweep; there is one choice for each value
  *       least: makespan         # or greatest: a formula of settings and results, as of `optimise:`
+ *       called: run time        # optional: what the goal is called in sentence and picture
  *       against: as it is       # optional: the value of `of` to compare the others with
  *       within: 10 %            # optional: how much worse than that is good enough */
 #ifndef PLAN_ANSWER_FILE_H

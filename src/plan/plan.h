@@ -50,6 +50,7 @@ struct plan_answer {
     const char *of, *over; /* full keys, or "variant"; over NULL: one choice */
     const char *of_word, *over_word; /* as the file writes them */
     const struct expression *goal;
+    const char *called; /* what the goal is called, NULL: as the formula is written */
     bool greatest;
     const char *against; /* value of `of`, NULL: none */
     double within;       /* share, 0: not asked */

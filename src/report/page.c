@@ -140,22 +140,48 @@ bool page_close(struct page *p, const char *folder, const char *name, bool keep,
         (whole && write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
          write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
     struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html,
-                                 &p->script};
-    for (int i = 0; i < 5; i++) text_free(mine[i]);
+                                 &p->script,  &p->anchors};
+    for (int i = 0; i < 6; i++) text_free(mine[i]);
     *p = (struct page){0};
     return ok;
 }
 
-/* The anchor of a heading, as GitHub makes it in Markdown: small letters, hyphens for blanks,
- * punctuation left out. HTML gets the same, so that both have the same links. */
-static void add_anchor(struct text *out, const char *heading)
+/* The words of a heading as GitHub writes them into links: small letters, hyphens for blanks,
+ * punctuation left out, letters beyond ASCII as they are. */
+static void add_slug(struct text *out, const char *heading)
 {
-    for (const char *c = heading; *c; c++) {
-        char letter = (char)tolower((unsigned char)*c);
-        if (letter == ' ') letter = '-';
-        if (isalnum((unsigned char)letter) || letter == '-' || letter == '_')
+    for (const unsigned char *c = (const unsigned char *)heading; *c; c++) {
+        const char letter = *c == ' ' ? '-' : (char)tolower(*c);
+        /* UTF-8 of U+2000 to U+206F: dashes, quotes, the comma that stands for one in a name. */
+        const bool punctuation = c[0] == 0xe2 && (c[1] == 0x80 || c[1] == 0x81) && c[2] != 0;
+        if (punctuation) c += 2;
+        else if (*c >= 0x80 || isalnum(*c) || letter == '-' || letter == '_')
             text_add_bytes(out, &letter, 1);
     }
+}
+
+/* Whether a line of `list`, each ended by '\n', is `word`. */
+static bool has_line(const struct text *list, const char *word)
+{
+    const size_t n = strlen(word);
+    for (const char *line = list->s; line != NULL && *line; line = strchr(line, '\n') + 1)
+        if (strncmp(line, word, n) == 0 && line[n] == '\n') return true;
+    return false;
+}
+
+/* The anchor of a heading. Of headings with equal words the second has "-1" behind them, the third
+ * "-2", as GitHub counts them over all levels: Markdown and HTML have the same links, and each
+ * leads to its own heading. */
+static void add_anchor(struct page *p, struct text *out, const char *heading)
+{
+    text_add(out, "%s", "");
+    add_slug(out, heading);
+    const size_t words = out->length;
+    for (int k = 1; has_line(&p->anchors, out->s); k++) {
+        out->length = words;
+        text_add(out, "-%d", k);
+    }
+    text_add(&p->anchors, "%s\n", out->s);
 }
 
 /* One line of the contents. */
@@ -173,12 +199,12 @@ static void list_heading(struct page *p, const char *text, const char *anchor)
     text_free(&html);
 }
 
-/* Only headings of level 2 have anchors: the contents list no others. */
+/* Every heading takes part in the count of equal ones; links lead to those of level 2 alone, which
+ * the contents list. */
 void page_heading(struct page *p, int level, const char *text)
 {
     struct text anchor = {0};
-    add_anchor(&anchor, text);
-    text_add(&anchor, "%s", "");
+    add_anchor(p, &anchor, text);
     fprintf(p->md, "%.*s ", level, "####");
     escape_markdown(p->md, text, false);
     fputs("\n\n", p->md);

@@ -21,6 +21,7 @@ struct page {
     bool has_contents;
     size_t list_at_md, list_at_html; /* where the list goes */
     struct text list_md, list_html;
+    struct text anchors; /* of all headings so far, a line each: no two are equal */
     struct err trouble; /* a picture that is there and could not be read */
 };
 

@@ -80,6 +80,13 @@ static bool find_by(struct plot *p, struct err *e)
     return true;
 }
 
+/* What the caller calls an axis better than its column does. */
+static void name_axis(struct plot_column *c, struct plot_axis_name name)
+{
+    if (name.title != NULL) c->title = name.title;
+    if (name.unit != UNIT_NONE) c->unit = name.unit;
+}
+
 /* What stands on which axis: of a heat map --y is a place and --z the value, of all others --y is
  * the value. */
 static bool find_axes(struct plot *p, struct err *e)
@@ -98,6 +105,8 @@ static bool find_axes(struct plot *p, struct err *e)
     if (!s->column[a->value].number)
         return err_set(e, ERR_USAGE, "'%s' is no number: it cannot be drawn over '%s'",
                        s->column[a->value].key, s->column[a->x].key);
+    name_axis(&s->column[a->x], r->x_name);
+    name_axis(&s->column[a->value], r->value_name);
     return find_by(p, e);
 }
 
@@ -159,11 +168,15 @@ static void make_axis(struct axis *axis, const struct plot_column *c, enum plot_
     const bool scaled = c->unit == UNIT_TIME || c->unit == UNIT_BANDWIDTH ||
                         c->unit == UNIT_FLOP_RATE || c->unit == UNIT_FREQUENCY;
     const char *per = c->unit == UNIT_BANDWIDTH ? "B/s" : c->unit == UNIT_FLOP_RATE ? "flop/s" : si;
-    const double factor = scaled && largest > 0 ? prefix_of(c->unit, largest, &name) : 1;
+    const double factor = scaled && largest > 0      ? prefix_of(c->unit, largest, &name)
+                          : c->unit == UNIT_PERCENT ? 0.01
+                                                    : 1;
     axis->scale = 1 / factor;
     axis->base = c->number ? log_base(wanted, least, largest, powers) : 0;
     if (c->unit == UNIT_TIME)
         snprintf(axis->label, sizeof axis->label, "%.150s [%s]", c->title, name);
+    else if (c->unit == UNIT_PERCENT)
+        snprintf(axis->label, sizeof axis->label, "%.150s [%%]", c->title);
     else if (*si != '\0')
         snprintf(axis->label, sizeof axis->label, "%.150s [%s%s]", c->title, name, per);
     else text_copy(axis->label, sizeof axis->label, c->title);

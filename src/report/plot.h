@@ -4,11 +4,18 @@
 #define REPORT_PLOT_H
 
 #include "base/text.h"
+#include "base/units.h"
 #include "report/plot_where.h"
 #include "store/store.h"
 
 enum plot_kind { PLOT_AUTO, PLOT_LINES, PLOT_BARS, PLOT_HEAT };
 enum plot_scale { PLOT_SCALE_AUTO, PLOT_SCALE_LINEAR, PLOT_SCALE_LOG };
+
+/* What an axis is called where its column's name cannot say it: letters, digits and _ alone. */
+struct plot_axis_name {
+    const char *title; /* NULL: as the column is called */
+    enum unit unit;    /* UNIT_NONE: as the column says */
+};
 
 /* What is asked for. Columns are named as in plot_sheet.h; NULL: chosen. */
 struct plot_request {
@@ -20,6 +27,7 @@ struct plot_request {
     enum plot_kind kind;
     enum plot_scale x_scale, y_scale; /* y_scale also of z */
     const char *title;   /* NULL: what is drawn over what */
+    struct plot_axis_name x_name, value_name;
     const char *as;      /* name of the files */
     int nwhere;
     struct plot_condition where[MOST_CONDITIONS];

@@ -63,7 +63,7 @@ shown() {
     drawn slack
     db=$BATS_FILE_TMPDIR/real.db
     [ "$(grep -c '^1,' "$picture.csv")" -eq 16 ]
-    shown 'Slack of dynamics on t3e-300: n = 16; P = 16; level link' 'slack [µs]' 'rank' 'critical' 'nearly' 'has more slack'
+    shown 'Slack of dynamics on t3e-300: n = 16; P = 16; level link' 'slack [µs]' 'rank' 'critical' 'nearly' 'more slack'
     # shares of a bar are the whole of it
     awk -F, '$1 == 2 && ($4 + $5 + $6 < 99.999 || $4 + $5 + $6 > 100.001) { bad = 1 } END { exit bad }' "$picture.csv"
     while read -r part; do shown "${part//&/&amp;}"; done < <(sql "$db" "SELECT stage || ': ' || cause FROM slack ORDER BY time_ps DESC LIMIT 3")

@@ -166,3 +166,12 @@ cell() {
         done
     done
 }
+
+@test "large powers of two have the prefixes of sizes" {
+    runs
+    echo 'SELECT column1 AS bytes, column2 AS took_s FROM (VALUES (64, 1e-6), (4096, 2e-6), (262144, 9e-6), (4194304, 1e-4))' >sizes.sql
+    works mimdsim plot runs.db sizes.sql
+    sed 's/<[^>]*>//g' figures/sizes.svg | tr -d ' ' >texts
+    for text in 64 256 1Ki 16Ki 256Ki 4Mi; do grep -qxF "$text" texts || { echo "no $text"; return 1; }; done
+    ! grep -q '[0-9]ki' texts
+}

@@ -83,6 +83,26 @@ planted() {
     stdout_says 'not counted: disturbed'
 }
 
+@test "predict tells which machine it is, and takes no shipped one unless it is named" {
+    needs mpich
+    planted
+    host=$(sqlite3 r.db 'SELECT host FROM real_run')
+    fails_with 64 mimdsim predict "${scenario[@]}"
+    stderr_says "the runs were measured on $host, and t3e-300 is another machine: name the machine file of $host"
+    stdout_is_empty
+    works mimdsim predict "${scenario[@]}" -m paragon
+    [ "$(head -1 <<<"$output")" = "predicted on paragon, measured on $host" ]
+    works mimdsim predict "${scenario[@]}" --set machine=t3e-300 --set machine.network.hop_latency='1 us'
+    [ "$(head -1 <<<"$output")" = "predicted on t3e-300, hop_latency 1 us, measured on $host" ]
+    works mimdsim predict "${scenario[@]}" -m paragon --json
+    json_is '$[0].machine' paragon
+    # A file of one's own that the scenario names is what is meant.
+    printf '%s\n' 'schema_version: 1' 'base: paragon' 'title: Mine' 'network: {hop_latency: 1 us}' >mine.yaml
+    sed 's/^machine: t3e-300/machine: mine/' "$MIMDSIM_DATA/scenarios/speedup-t3e.yaml" >speedup.yaml
+    works mimdsim predict speedup.yaml "${scenario[@]:1}"
+    [ "$(head -1 <<<"$output")" = "predicted on mine, measured on $host" ]
+}
+
 @test "predict without measured runs says how to make them" {
     works mimdsim run pingpong -q --set ranks=2 --set kernel.message='8 B'
     fails_with 66 mimdsim predict speedup-t3e --set ranks=2 --set n=16

@@ -71,6 +71,35 @@ us() {
     [ -s figures/ask.svg ]
 }
 
+# texts_are FILE TEXT...: the drawing has each of these texts.
+texts_are() {
+    local file=$1 text
+    shift
+    for text; do grep -qF "<text>$text<" "$file" || { echo "not in $file: $text"; grep -o '<text>[^<]*' "$file"; return 1; }; done
+}
+
+@test "axes and curves of the picture are called as the file calls them, with their units" {
+    asks '{of: variant, over: kernel.message, least: makespan}'
+    works mimdsim run ask.yaml -o ask.db
+    texts_are figures/ask.svg 'kernel.message [B]' 'run time [ms]' 'slow wire'
+    asks '{of: variant, over: kernel.message, least: 184 * makespan * makespan, called: "energy x time [J s]"}'
+    works mimdsim run ask.yaml -o ask.db
+    [[ $(sentence) == "'plain' has the least energy x time for kernel.message"* ]]
+    # numbers of six letters leave room for it
+    texts_are figures/ask.svg 'energy x time [J s]'
+    # without a name the formula is one, and a unit that it has is told
+    asks '{of: variant, over: machine.network.link.bandwidth, greatest: 1 / makespan}'
+    sed -i 's|^  kernel.message:.*|  machine.network.link.bandwidth: [100 MB/s, 400 MB/s]|; s|name: slow wire.*|name: far, machine.network.hop_latency: 1 us}|' ask.yaml
+    works mimdsim run ask.yaml -o two.db
+    texts_are figures/ask.svg '1 / makespan' 'link.bandwidth [MB/s]'
+    sed -i 's|^  machine.network.link.bandwidth:.*|  machine.noise.compute: [1 %, 25 %]|; s|^answer.*|answer: {of: variant, over: machine.noise.compute, least: makespan}|' ask.yaml
+    works mimdsim run ask.yaml -o three.db
+    texts_are figures/ask.svg 'noise.compute [%]'
+    asks '{of: variant, over: kernel.message, least: makespan, called: ""}'
+    fails_with 65 mimdsim run ask.yaml -o ask.db
+    stderr_says "answer: called: '': expected a text"
+}
+
 @test "for programs there are rows alone; parts of a plan answer nothing" {
     asks '{of: variant, over: kernel.message, least: makespan}'
     works mimdsim run ask.yaml -o ask.db --json

@@ -120,6 +120,36 @@ static void contents_list_the_headings_that_follow(void **state)
     drop(&d);
 }
 
+static void equal_headings_have_links_of_their_own(void **state)
+{
+    (void)state;
+    struct folder d;
+    struct page p;
+    begin(&d, &p, "Runs");
+    page_contents(&p);
+    page_heading(&p, 2, "runs!");
+    page_heading(&p, 3, "T3E, as it is");
+    page_heading(&p, 2, "T3E as it is");
+    page_heading(&p, 2, "Runs 1");
+    page_heading(&p, 2, "Runs");
+    page_heading(&p, 2, "Gr\xc3\xb6\xc3\x9f" "e \xe2\x80\x93 so");
+    end(&d, &p);
+    /* The title, the lesser heading and a heading that looks like a counted one take part. */
+    static const char *const anchor[] = {"runs-1", "t3e-as-it-is-1", "runs-1-1", "runs-2",
+                                         "gr\xc3\xb6\xc3\x9f" "e--so"};
+    for (size_t i = 0; i < sizeof anchor / sizeof *anchor; i++) {
+        char part[80];
+        snprintf(part, sizeof part, "<h2 id=\"%s\">", anchor[i]);
+        has(&d.html, part);
+        snprintf(part, sizeof part, "<a href=\"#%s\">", anchor[i]);
+        has(&d.html, part);
+        snprintf(part, sizeof part, "](#%s)", anchor[i]);
+        has(&d.md, part);
+        if (strstr(strstr(d.md.s, part) + 1, part) != NULL) fail_msg("twice: %s", part);
+    }
+    drop(&d);
+}
+
 static void cells_of_tables(void **state)
 {
     (void)state;
@@ -236,6 +266,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_files_say_the_same),
         cmocka_unit_test(contents_list_the_headings_that_follow),
+        cmocka_unit_test(equal_headings_have_links_of_their_own),
         cmocka_unit_test(cells_of_tables),
         cmocka_unit_test(nothing_is_written_that_is_not_kept),
         cmocka_unit_test(errors_in_words),
