@@ -35,7 +35,7 @@ longest = most[1] > most[2] ? (most[1] > most[3] ? most[1] : most[3]) : (most[2]
 wide = 1000.0; left_edge = 80.0; gap = 20.0; panel_wide = (wide - left_edge - 14 - 2*gap)/3; panel_high = b == 1 ? 190.0 : 200.0
 upper_edge = 106.0
 row_high = panel_high + 62
-total = upper_edge + sides*row_high + (b == 1 ? 0 : 19*longest) + 34
+total = upper_edge + sides*row_high + (b == 1 ? 0 : 16*longest) + 30
 at_x(px) = px/wide; at_y(px) = 1.0 - px/total
 column_left(c) = left_edge + (c - 1)*(panel_wide + gap)
 decade(x) = floor(log10(x))

@@ -29,10 +29,13 @@ do for [format in formats] {
     set xtics autofreq offset 0,tick_lift(format)
     set xrange [0:*]
     # latency
-    set lmargin at screen 0.08; set rmargin at screen 0.52
+    set lmargin at screen 0.1; set rmargin at screen 0.52
     set logscale y; set yrange [lowest*0.7:highest*12]
+    # a range of one or two decades has few powers of ten
+    set ytics ()
+    do for [d=floor(log10(lowest*0.7)):ceil(log10(highest*12))] { do for [m in "1 2 5"] { set ytics add (sprintf("%g", m*10.0**d) m*10.0**d) } }
     set xlabel "offered load [flits per node and cycle]" offset 0,name_lift(format); set ylabel "latency [ns]"
-    set key at screen 0.08,((20.0*rows + 30)/high_px) left top vertical maxrows rows samplen 2.4 noenhanced
+    set key at screen 0.1,((20.0*rows + 30)/high_px) left top vertical maxrows rows samplen 2.4 noenhanced
     do for [k=1:last] { if (sat[k] > 0) {
         set arrow 10+k from sat[k],lowest*0.7 to sat[k],highest*12 nohead linewidth 1 dashtype 3 linecolor rgb colour[turn(k)]
         set arrow 30+k from low[k],lowest*0.74 to high[k],lowest*0.74 nohead linewidth 4 linecolor rgb colour[turn(k)]
@@ -50,7 +53,8 @@ do for [format in formats] {
     do for [k=1:last] { unset arrow 10+k; unset arrow 30+k }
     # accepted
     unset logscale
-    set lmargin at screen 0.60; set rmargin at screen 0.98
+    set ytics autofreq
+    set lmargin at screen 0.61; set rmargin at screen 0.98
     set yrange [0:*]
     set ylabel "accepted load [flits per node and cycle]"
     plot data using "offered":"offered" with lines linewidth 1 dashtype 2 linecolor rgb pale, \

@@ -41,7 +41,7 @@ SELECT m.motion, m.implicit, a.x, iif(m.motion, c.r, c.r + c.g) AS y, m.subject,
        iif(m.energy_drift IS NULL, '–', iif(m.energy_drift = 0, '=0', format('%.0e', m.energy_drift))) AS drift_text,
        m.residual, m.condition, m.growth, m.refinements, m.energy_drift, m.step_s, replace(m.reason, ',', ' –') AS reason, m.suite,
        CASE ?1 ->> '$[1]' WHEN 'masses' THEN 'masses and inertias' WHEN 'loads' THEN 'lengths; poses; rates and loads'
-            WHEN 'sizes' THEN 'sizes, bases and joints' WHEN 'trees' THEN 'branches and loops' WHEN 'motions' THEN 'motions of stiff scenes' ELSE ?1 ->> '$[1]' END AS what
+            WHEN 'sizes' THEN 'sizes; bases and joints' WHEN 'trees' THEN 'branches and loops' WHEN 'motions' THEN 'motions of stiff scenes' ELSE ?1 ->> '$[1]' END AS what
 FROM mine m JOIN cases c ON c.subject = m.subject
      JOIN algorithms a ON a.algorithm = m.algorithm AND a.precision = m.precision
 ORDER BY m.motion, y, a.x;

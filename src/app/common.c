@@ -345,10 +345,14 @@ void common_print_pairs(const struct common *c, int n, const char *const *name,
                         const char *const *title)
 {
     struct json j = json_make(stdout);
+    int wide = 0;
     if (c->json) json_array(&j);
+    /* The titles stand below each other, behind the longest name. */
+    for (int i = 0; i < n; i++)
+        if ((int)strlen(name[i]) > wide) wide = (int)strlen(name[i]);
     for (int i = 0; i < n; i++) {
         if (!c->json) {
-            printf("%-20s %s\n", name[i], title[i]);
+            printf("%-*s  %s\n", wide, name[i], title[i]);
             continue;
         }
         json_object(&j);

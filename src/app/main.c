@@ -27,7 +27,7 @@ static void print_help(FILE *out)
         "  mimdsim run scenarios/speedup-t3e.yaml     run a scenario, store it, print the "
         "table\n  mimdsim plot mimdsim.db fig6               draw a figure from the database\n\n");
     for (const struct verb *v = verb_list; v->name; v++)
-        fprintf(out, "  %-11s %s\n", v->name, v->title);
+        fprintf(out, "  %-12s %s\n", v->name, v->title);
     fprintf(
         out,
         "\n'mimdsim VERB --help' describes a verb, with an example. Exit statuses: mimdsim(1).\n");
