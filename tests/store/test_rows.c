@@ -44,13 +44,14 @@ static void assert_rows(struct store *s, const char *query, const char *wanted)
 
 /* ---- times of ranks ---- */
 
-/* Numbers at which the count of digits changes, and the ends of what there is. */
-static int64_t odd_number(struct random *r)
+/* Numbers at which the count of digits changes; `any`: with a sign, and the ends of what there
+ * is. */
+static int64_t odd_number(struct random *r, bool any)
 {
-    static const int64_t edge[] = {0,  1,   -1,  9,         10,        -9, -10,
-                                   99, 100, 999, INT64_MAX, INT64_MIN, 1,  0};
-    if (random_below(r, 3) > 0) return edge[random_below(r, sizeof edge / sizeof *edge)];
-    return (int64_t)(random_u64(r) >> random_below(r, 63));
+    static const int64_t edge[] = {0,  1,  9,   10,  99,        100,      999, 1000000000000,
+                                   -1, -9, -10, -99, INT64_MAX, INT64_MIN};
+    if (random_below(r, 3) > 0) return edge[random_below(r, any ? 14 : 8)];
+    return (int64_t)(random_u64(r) >> (random_below(r, 50) + 8));
 }
 
 /* The text by printf. */
@@ -86,13 +87,13 @@ static void times_of_ranks_are_written_to_the_digit(void **state)
         for (int i = 0; i < 20; i++) {
             /* a third of them did nothing */
             if (random_below(&r, 3) == 0) continue;
-            stage[i] = (struct stage_time){.compute_ps = odd_number(&r),
-                                           .send_ps = odd_number(&r),
-                                           .recv_ps = odd_number(&r),
-                                           .wait_ps = odd_number(&r),
-                                           .contention_ps = odd_number(&r),
-                                           .messages = odd_number(&r),
-                                           .bytes = odd_number(&r)};
+            stage[i] = (struct stage_time){.compute_ps = odd_number(&r, false),
+                                           .send_ps = odd_number(&r, false),
+                                           .recv_ps = odd_number(&r, false),
+                                           .wait_ps = odd_number(&r, false),
+                                           .contention_ps = odd_number(&r, false),
+                                           .messages = odd_number(&r, true),
+                                           .bytes = odd_number(&r, true)};
             stage[i].work.flop = random_u64(&r) >> 1;
         }
         struct text is = {0}, wanted = {0};

@@ -150,6 +150,55 @@ static void what_differs_is_a_column(void **state)
                         "5 5 5");
 }
 
+/* Settings that nobody has a table of: of strangers, long, and more than there is room for. */
+static void any_key_is_a_plain_name_or_no_column(void **state)
+{
+    enum { LONG = 95, MOST = 64 };
+    struct shown *x = *state;
+    struct text t = {0}, longest = {0};
+    for (int i = 0; i < LONG; i++) text_add(&longest, "k");
+    for (int v = 0; v < 2; v++)
+        text_add(&t,
+                 "INSERT INTO setting (key, value) VALUES ('program.a''b', '%d'), ('program.c\"d', "
+                 "'%d'), ('x.y', '%d'), ('%s', '%d'), ('%sk', '%d'), ('label', '%d'), ('ranks', "
+                 "'%d'), ('scenario', '%d'), ('n', '%d'), ('MAKESPAN_S', '%d');",
+                 v, v, v, longest.s, v, longest.s, v, v, v, v, v, v);
+    sql(x->file->path, t.s);
+    sweep(x);
+    /* beside the ten columns that are always there: x.y, and the key of 95 letters */
+    assert_string_equal(rows(x, x->s,
+                             "SELECT count(*), total(name = 'x_y'), total(length(name) = 95), "
+                             "max(length(name)) FROM pragma_table_info('v_swept')"),
+                        "12 1.0 1.0 95");
+    text_free(&t);
+    text_free(&longest);
+    for (int i = 0; i < MOST + 6; i++)
+        text_add(&t, "INSERT INTO setting (key, value) VALUES ('q%d', 'a'), ('q%d', 'b');", i, i);
+    sql(x->file->path, t.s);
+    sweep(x);
+    assert_string_equal(rows(x, x->s, "SELECT count(*) FROM pragma_table_info('v_swept')"), "74");
+    text_free(&t);
+}
+
+/* It is written when something has changed, and goes when nothing differs any more. */
+static void the_view_is_written_when_it_changes(void **state)
+{
+    static const char version[] = "SELECT schema_version FROM pragma_schema_version";
+    struct shown *x = *state;
+    sql(x->file->path, "INSERT INTO setting (key, value) VALUES ('a', '1'), ('a', '2')");
+    sweep(x);
+    const char *before = rows(x, x->s, version);
+    sweep(x);
+    assert_string_equal(rows(x, x->s, version), before);
+    sql(x->file->path, "INSERT INTO setting (key, value) VALUES ('b', '1'), ('b', '2')");
+    sweep(x);
+    assert_string_equal(rows(x, x->s, swept_columns), "a,b");
+    sql(x->file->path, "DELETE FROM setting WHERE value = '2'");
+    sweep(x);
+    assert_string_equal(rows(x, x->s, "SELECT count(*) FROM sqlite_schema WHERE name = 'v_swept'"),
+                        "0");
+}
+
 /* The time of a run and its name as table run has them. */
 static void a_row_is_its_run(void **state)
 {
@@ -315,6 +364,9 @@ static void a_table_lives_as_long_as_its_connection(void **state)
         err_clear(&x->e);
     }
     assert_string_equal(rows(x, x->s, "SELECT count(*) FROM temp.\"order\""), "2");
+    assert_false(store_temporary(x->s, "wrong", "a INTEGER,", &x->e));
+    err_clear(&x->e);
+    assert_string_equal(rows(x, x->s, "SELECT query_only FROM pragma_query_only"), "1");
     /* and everything but these tables is still only read */
     struct text ignored = {0};
     assert_false(store_select(x->s, "DELETE FROM run", 0, NULL, take_row, &ignored, &x->e));
@@ -358,6 +410,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(what_differs_is_a_column),
+        TEST(any_key_is_a_plain_name_or_no_column),
+        TEST(the_view_is_written_when_it_changes),
         TEST(a_row_is_its_run),
         TEST(a_view_of_a_user_keeps_its_name),
         TEST(a_stored_run_is_called_otherwise),
