@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/random.h"
 #include "guest/guest_lines.h"
@@ -92,6 +93,46 @@ static void what_is_kept_has_a_limit(void **state)
     assert_true(said.length >= GUEST_SAID_MOST && said.length < GUEST_SAID_MOST + sizeof one + 4);
     assert_int_equal(said.s[said.length - 1], '\n');
     text_free(&said);
+}
+
+/* What the function shows on a descriptor, through a pipe. */
+static void shown(int descriptor, enum program_output output, char seen[200])
+{
+    int end[2];
+    struct guest_line line = {0};
+    const int stream = descriptor == 2 ? 2 : 1;
+    fflush(NULL);
+    const int kept = dup(descriptor);
+    assert_int_equal(pipe(end), 0);
+    assert_true(dup2(end[1], descriptor) >= 0);
+    guest_line_add(&line, 12, stream, "one\n\033[1mtw", 10, output, NULL);
+    guest_line_add(&line, 12, stream, "o\n", 2, output, NULL);
+    guest_line_end(&line, 12, stream, output, NULL);
+    fflush(NULL);
+    dup2(kept, descriptor);
+    close(kept);
+    close(end[1]);
+    const ssize_t n = read(end[0], seen, 199);
+    seen[n > 0 ? n : 0] = '\0';
+    close(end[0]);
+}
+
+/* Shown at once and as they are, each line whole, with its rank where that is asked for; on the
+ * stream that they were written to. */
+static void lines_are_shown_as_asked(void **state)
+{
+    static const char *const wanted[] = {
+        [PROGRAM_OUTPUT_KEEP] = "",
+        [PROGRAM_OUTPUT_SHOW] = "one\n\033[1mtwo\n",
+        [PROGRAM_OUTPUT_LABEL] = "[12] one\n[12] \033[1mtwo\n",
+    };
+    (void)state;
+    for (int descriptor = 1; descriptor <= 2; descriptor++)
+        for (int output = 0; output < 3; output++) {
+            char seen[200];
+            shown(descriptor, (enum program_output)output, seen);
+            assert_string_equal(seen, wanted[output]);
+        }
 }
 
 /* --- results --- */
@@ -302,6 +343,7 @@ int main(void)
         cmocka_unit_test(lines_are_kept_as_they_are_written),
         cmocka_unit_test(pieces_do_not_matter),
         cmocka_unit_test(what_is_kept_has_a_limit),
+        cmocka_unit_test(lines_are_shown_as_asked),
         cmocka_unit_test(published_pieces_make_a_result),
         cmocka_unit_test(results_have_their_limits),
         cmocka_unit_test(differences_are_relative_to_the_largest),

@@ -173,6 +173,49 @@ static void verdicts_name_a_remedy(void **state)
     assert_true(isnan(out.residual) && out.status == RUN_OK);
 }
 
+/* A tree has inner refinements but in linearly implicit steps, no solver that could be changed, and
+ * no residuals in twice the digits. */
+static void remedies_of_trees(void **state)
+{
+    (void)state;
+    static const struct {
+        struct kernel_spec k;
+        const char *remedy;
+    } row[] = {
+        {{.formulation = FORMULATION_PAPER}, "try kernel.formulation: direct"},
+        {{.formulation = FORMULATION_DIRECT}, "try kernel.inner_refinements: 1"},
+        {{.formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR},
+         "try kernel.inner_refinements: 1"},
+        {{.formulation = FORMULATION_DIRECT, .steps = 1, .step = STEP_LINEARLY_IMPLICIT},
+         "try kernel.outer_refinements: 1"},
+        {{.formulation = FORMULATION_DIRECT, .steps = 1, .step = STEP_RK4},
+         "try kernel.inner_refinements: 1"},
+        {{.formulation = FORMULATION_DIRECT, .inner_refinements = 2},
+         "try kernel.outer_refinements: 1"},
+        {{.formulation = FORMULATION_DIRECT,
+          .inner_refinements = 1,
+          .outer_refinements = 1,
+          .solver = SOLVER_PCR},
+         "try a higher kernel.precision"},
+        {{.formulation = FORMULATION_DIRECT, .refinement = REFINEMENT_AS_NEEDED},
+         "try a higher kernel.precision"},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        const double residual[] = {0, 1, 0}, condition[] = {1, 1, 1};
+        struct program_run *r = make_run(residual, NULL, condition);
+        struct run_result out = {.status = RUN_OK};
+        const struct model m = {.nbody = 10};
+        const enum refinement_rule rule = row[i].k.refinement;
+        r->spec.kernel = row[i].k;
+        r->spec.kernel.refinement = i == 7 ? rule : REFINEMENT_AS_GIVEN;
+        r->spec.model.generator = MODEL_STAR;
+        dynamics_run_of(r)->job.model = &m;
+        trust_check(r, &out);
+        assert_int_equal(out.status, RUN_INVALID);
+        if (strstr(out.text, row[i].remedy) == NULL) fail_msg("case %zu: %s", i, out.text);
+    }
+}
+
 /* The settings after each further attempt with a residual that is too much. */
 struct course {
     int inner, outer;
@@ -297,6 +340,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_worst_rank_counts),
         cmocka_unit_test(verdicts_name_a_remedy),
+        cmocka_unit_test(remedies_of_trees),
         cmocka_unit_test(refinements_are_tried_in_their_order),
         cmocka_unit_test(settings_may_forbid_refinements),
         cmocka_unit_test(tolerances_grow_with_the_bodies),

@@ -53,6 +53,26 @@ static void files_lie_one_behind_the_other(void **state)
     }
 }
 
+/* Data in two segments, as linkers make it for constants that are write-protected later: all is
+ * data from the first one on. */
+static void data_begins_with_its_first_segment(void **state)
+{
+    (void)state;
+    struct elf_file *f = &program->file[1].elf;
+    f->segment[2] = f->segment[1];
+    f->segment[1].p_filesz = f->segment[1].p_memsz = 0x800;
+    f->segment[2].p_vaddr += 0x2000, f->segment[2].p_offset += 0x1000;
+    f->segment[2].p_filesz = 0x100;
+    f->nsegment = 3;
+    made_image();
+    const struct loader_file *b = &program->file[1];
+    assert_int_equal(b->data, b->begin + DATA);
+    assert_int_equal(b->end, b->begin + DATA + 0x3000);
+    assert_int_equal(b->memory_end, b->begin + DATA + 0x2000 + DATA_MEMORY);
+    assert_memory_equal(program->bytes + b->place + DATA + 0x2000, made[1].bytes + DATA + 0x1000,
+                        0x100);
+}
+
 static void data_is_what_may_be_written(void **state)
 {
     (void)state;
@@ -212,6 +232,88 @@ static void the_hosts_names_come_last(void **state)
     assert_ptr_equal(s.address, dlsym(RTLD_DEFAULT, "malloc"));
 }
 
+/* Functions that choose a function are names like others; sections, files and types that nobody
+ * knows are not. */
+static void only_what_can_be_used_is_offered(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int type;
+        bool offered;
+    } row[] = {{"object", STT_OBJECT, true},     {"function", STT_FUNC, true},
+               {"chooser", STT_GNU_IFUNC, true}, {"local_of_thread", STT_TLS, true},
+               {"untyped", STT_NOTYPE, true},    {"strange", 8, false},
+               {"stranger", STT_HIPROC, false}};
+    const size_t n = sizeof row / sizeof *row;
+    for (size_t i = 0; i < n; i++) made_symbol(1, row[i].name, STB_GLOBAL, row[i].type, 1, 16);
+    made_symbol(1, "missing_chooser", STB_GLOBAL, STT_GNU_IFUNC, SHN_UNDEF, 0);
+    made_symbol(1, "far", STB_GLOBAL, STT_OBJECT, 1, UINT64_C(1) << 46);
+    made_image();
+    for (size_t i = 0; i < n; i++)
+        assert_int_equal(symbols_defined(program, row[i].name).file != NULL, row[i].offered);
+    assert_null(symbols_defined(program, "missing_chooser").file);
+    assert_null(symbols_defined(program, "far").file);
+}
+
+/* Of a name with several versions the host gives the one that is asked for. */
+static void the_version_that_was_linked_is_the_one(void **state)
+{
+    (void)state;
+    struct found s;
+    struct {
+        Elf64_Verneed need;
+        Elf64_Vernaux aux;
+    } table = {{1, 1, 0, sizeof table.need, 0}, {0, 0, 2, 0, 0}};
+    const size_t old = made_unknown(0, "memcpy", STB_GLOBAL),
+                 any = made_unknown(0, "memcpy", STB_GLOBAL);
+    /* the version's name stands in the table of names */
+    made_unknown(0, "GLIBC_2.2.5", STB_WEAK);
+    table.aux.vna_name = made[0].symbol[3].st_name;
+    program->file[0].elf.verneed = (struct elf_table){&table, 1};
+    made[0].version[old] = 2;
+    made_image();
+    assert_true(symbols_find(program, &program->file[0], old, &s));
+    assert_ptr_equal(s.address, dlvsym(program->host[0], "memcpy", "GLIBC_2.2.5"));
+    assert_true(symbols_find(program, &program->file[0], any, &s));
+    assert_ptr_equal(s.address, dlsym(program->host[0], "memcpy"));
+    assert_ptr_not_equal(s.address, dlvsym(program->host[0], "memcpy", "GLIBC_2.2.5"));
+}
+
+/* The host's further libraries are opened as they are needed, as many as there is room for; and
+ * thread-locals are found by the block that stands for their module. */
+static void the_hosts_libraries_are_opened_as_needed(void **state)
+{
+    struct found s;
+    struct err e;
+    const size_t sines = made_unknown(0, "_ZGVbN2v_sin", STB_GLOBAL),
+                 local = made_unknown(0, "__tls_get_addr", STB_GLOBAL);
+    program->file[1].elf.needed[0] = "libother.so";
+    program->file[1].elf.needed[1] = "libmvec.so.1";
+    program->file[1].elf.nneeded = 2;
+    made_image();
+    assert_int_equal(program->nhost, 3);
+    assert_true(symbols_find(program, &program->file[0], sines, &s));
+    assert_ptr_equal(s.address, dlsym(program->host[2], "_ZGVbN2v_sin"));
+    assert_true(symbols_find(program, &program->file[0], local, &s));
+    void *(*get)(const uint64_t *) = (void *(*)(const uint64_t *))s.address;
+    assert_ptr_equal(get((const uint64_t[]){0x1000, 0x18}), (void *)0x1018);
+    made_end(state);
+    made_begin(state);
+    for (int k = 0; k < LOADER_HOST_LIBRARIES - 2; k++)
+        program->file[0].elf.needed[k] = "libmvec.so.1";
+    program->file[0].elf.nneeded = LOADER_HOST_LIBRARIES - 2;
+    err_clear(&e);
+    assert_true(symbols_make(program, &e));
+    assert_int_equal(program->nhost, LOADER_HOST_LIBRARIES);
+    symbols_give_back(program);
+    program->file[0].elf.needed[LOADER_HOST_LIBRARIES - 2] = "libmvec.so.1";
+    program->file[0].elf.nneeded++;
+    assert_false(symbols_make(program, &e));
+    assert_int_equal(e.kind, ERR_INTERNAL);
+    assert_non_null(strstr(e.text, "too many"));
+}
+
 /* More names than one table has room for at first, many of them alike. */
 static void thousands_of_names_are_found(void **state)
 {
@@ -298,6 +400,10 @@ static void a_return_address_has_a_call_before_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        TEST(data_begins_with_its_first_segment),
+        TEST(only_what_can_be_used_is_offered),
+        TEST(the_version_that_was_linked_is_the_one),
+        TEST(the_hosts_libraries_are_opened_as_needed),
         TEST(files_lie_one_behind_the_other),
         TEST(data_is_what_may_be_written),
         TEST(addresses_tell_rank_and_file),

@@ -338,6 +338,41 @@ static void a_file_takes_its_place_once(void **state)
     publish_drop(&none);
 }
 
+static bool is_there(const char *path, const char *suffix)
+{
+    char name[300];
+    snprintf(name, sizeof name, "%s%s", path, suffix);
+    return access(name, F_OK) == 0;
+}
+
+/* Logs of a database that is gone would be read as those of the new one; with a database at the
+ * place they are that one's and stay. */
+static void logs_without_their_database_are_removed(void **state)
+{
+    static const char *const suffix[] = {"-wal", "-shm", "-journal", "-other"};
+    struct fixture *f = *state;
+    for (int there = 0; there < 2; there++) {
+        for (int i = 0; i < 4; i++) {
+            char name[300];
+            snprintf(name, sizeof name, "%s%s", f->path, suffix[i]);
+            fclose(fopen(name, "w"));
+        }
+        struct published b = {.file = -1};
+        if (!publish_place(f->path, NULL, 0, &b, &f->e)) fail_msg("%s", f->e.text);
+        publish_drop(&b);
+        for (int i = 0; i < 4; i++) assert_int_equal(is_there(f->path, suffix[i]), there || i == 3);
+    }
+}
+
+/* A folder of this computer is not one of several hosts, and neither is one that is not there. */
+static void the_own_disk_is_no_network(void **state)
+{
+    struct fixture *f = *state;
+    assert_false(publish_network(f->folder));
+    assert_false(publish_network("/proc"));
+    assert_false(publish_network("/no-such-folder-at-all"));
+}
+
 /* The bytes tell how the file is to be used (1.3.3 of SQLite's file format), and are a database of
  * this program with either. */
 static void the_bytes_say_which_journal(void **state)
@@ -375,6 +410,8 @@ int main(void)
         TEST(the_links_that_limit_a_run_are_kept),
         TEST(the_folder_of_a_path),
         TEST(a_file_takes_its_place_once),
+        TEST(logs_without_their_database_are_removed),
+        TEST(the_own_disk_is_no_network),
         TEST(the_bytes_say_which_journal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -181,6 +181,35 @@ static void means_of_groups_have_limits(void **state)
     assert_true(v.pass && v.cases == 0 && v.mean == 0);
 }
 
+/* Cases of several classes in one group: the limits shown are the widest, those of the mean come
+ * from the own ones of the classes; answers that may be far too small count by that side. */
+static void a_group_of_several_classes_has_limits_of_all(void **state)
+{
+    (void)state;
+    struct netcheck_row row[4] = {row_of("exact", "g"), load_of(1.2), load_of(1.2), load_of(1.2)};
+    struct netcheck n = {.nrow = 4, .row = row};
+    for (int i = 1; i < 4; i++) snprintf(row[i].group, sizeof row[i].group, "g");
+    /* packet: one step, exact; 3 %, -10 to 12 %; dragonfly: 6 %, -20 to 5 %; fat tree: 5 %, -12 to
+     * 6 % */
+    row[2].family = TOPOLOGY_DRAGONFLY, row[2].crowding = 1.1;
+    row[3].family = TOPOLOGY_FAT_TREE;
+    row[1].answer[LEVEL_PACKET].error = 0.11;
+    row[2].answer[LEVEL_PACKET].error = -0.18;
+    row[3].answer[LEVEL_PACKET].error = -0.03;
+    struct netcheck_verdict v = netcheck_verdict(&n, "g", LEVEL_PACKET, -1);
+    assert_int_equal(v.cases, 4);
+    assert_int_equal(v.failed, 0);
+    assert_true(v.low == -0.20 && v.high == 0.12);
+    assert_true(fabs(v.mean - (0.11 + 0.18 + 0.03) / 4) < 1e-12);
+    const double means = (0 + 0.03 + 0.06 + 0.05) / 4, worst = (0 + 0.12 + 0.20 + 0.12) / 4;
+    assert_true(fabs(v.mean_limit - (means + (worst - means) / 2)) < 1e-12);
+    assert_true(v.pass == (v.mean <= v.mean_limit));
+    /* an expected deadlock is a case without an error */
+    row[1].expect_deadlock = row[1].answer[LEVEL_PACKET].deadlock = true;
+    v = netcheck_verdict(&n, "g", LEVEL_PACKET, -1);
+    assert_true(v.cases == 4 && fabs(v.mean - (0.18 + 0.03) / 4) < 1e-12);
+}
+
 static void a_file_passes_when_all_groups_do(void **state)
 {
     (void)state;
@@ -362,6 +391,7 @@ int main(void)
         cmocka_unit_test(an_answer_fails_beyond_its_limits),
         cmocka_unit_test(deadlocks_are_part_of_the_answer),
         cmocka_unit_test(means_of_groups_have_limits),
+        cmocka_unit_test(a_group_of_several_classes_has_limits_of_all),
         cmocka_unit_test(a_file_passes_when_all_groups_do),
         cmocka_unit_test(totals_of_a_level),
         cmocka_unit_test(counts_of_verdicts),
