@@ -411,6 +411,30 @@ static void each_crash_has_its_sentence(void **state)
     crash_record_destroy(NULL);
 }
 
+/* Of places that nobody knows a line of the innermost one is told. */
+static void a_crash_is_where_its_innermost_place_is(void **state)
+{
+    (void)state;
+    struct crash_record *r = crash_record_create();
+    char text[600];
+    assert_non_null(r);
+    r->signal = SIGILL, r->rank = 3, r->now_ps = -1;
+    for (int k = 0; k < CRASH_FRAMES; k++) {
+        snprintf(r->frame[k].file, sizeof r->frame[k].file, "/no/such/lib%d.so", k);
+        r->frame[k].address = 0x20 + (uint64_t)k;
+    }
+    static const char *const wanted[] = {"rank 3: illegal instruction",
+                                         "rank 3 in lib0.so+0x20: illegal instruction",
+                                         "rank 3 in lib0.so+0x20: illegal instruction"};
+    for (int n = 0; n < 3; n++) {
+        r->nframe = n;
+        atomic_store(&r->kind, CRASH_SIGNAL);
+        assert_true(crash_text(r, text, sizeof text));
+        assert_string_equal(text, wanted[n]);
+    }
+    crash_record_destroy(r);
+}
+
 static void a_place_without_a_file_is_a_number_in_it(void **state)
 {
     (void)state;
@@ -489,6 +513,7 @@ int main(void)
         TEST(what_is_the_hosts_is_no_library_of_ranks),
         TEST(text_behind_data_is_refused),
         cmocka_unit_test(each_crash_has_its_sentence),
+        cmocka_unit_test(a_crash_is_where_its_innermost_place_is),
         cmocka_unit_test(a_place_without_a_file_is_a_number_in_it),
         cmocka_unit_test(a_child_leaves_what_its_parent_tells),
     };

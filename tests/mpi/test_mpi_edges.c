@@ -70,6 +70,81 @@ static void empty_epochs_end_at_once_and_wrong_ones_are_refused(void **state)
     mpi_ok(3, epochs, NULL);
 }
 
+/* An exposure ends when those who access have completed, not before: the one that exposes looks
+ * before it lets the other begin. */
+static void exposures(void *context)
+{
+    int memory = 0, one = 7, flag = 1, go = 0, looks = 0;
+    const int me = own_rank(), peer = 1 - me;
+    MPI_Win w;
+    MPI_Group all, other;
+    (void)context;
+    MPI_Win_create(&memory, sizeof memory, sizeof memory, MPI_INFO_NULL, MPI_COMM_WORLD, &w);
+    MPI_Comm_group(MPI_COMM_WORLD, &all);
+    MPI_Group_incl(all, 1, &peer, &other);
+    if (me == 0) {
+        MPI_Win_post(other, 0, w);
+        for (int i = 0; i < 3; i++) {
+            MPI_Win_test(w, &flag);
+            assert_false(flag);
+        }
+        MPI_Send(&go, 1, MPI_INT, 1, 0, MPI_COMM_WORLD);
+        while (!flag) {
+            MPI_Win_test(w, &flag);
+            assert_true(looks++ < 100000);
+        }
+        assert_int_equal(memory, 7);
+    } else {
+        MPI_Recv(&go, 1, MPI_INT, 0, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        MPI_Win_start(other, 0, w);
+        MPI_Put(&one, 1, MPI_INT, 0, 0, 1, MPI_INT, w);
+        MPI_Win_complete(w);
+    }
+    MPI_Group_free(&other);
+    MPI_Group_free(&all);
+    MPI_Win_free(&w);
+}
+
+static void an_exposure_ends_with_the_last_access(void **state)
+{
+    (void)state;
+    mpi_ok(2, exposures, NULL);
+}
+
+/* No call takes a window that is none. */
+static void no_window(void *context)
+{
+    int flag;
+    MPI_Group all;
+    (void)context;
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN);
+    MPI_Comm_group(MPI_COMM_WORLD, &all);
+    const int code[] = {MPI_Win_fence(0, MPI_WIN_NULL),
+                        MPI_Win_post(all, 0, MPI_WIN_NULL),
+                        MPI_Win_start(all, 0, MPI_WIN_NULL),
+                        MPI_Win_complete(MPI_WIN_NULL),
+                        MPI_Win_wait(MPI_WIN_NULL),
+                        MPI_Win_test(MPI_WIN_NULL, &flag),
+                        MPI_Win_lock(MPI_LOCK_SHARED, 0, 0, MPI_WIN_NULL),
+                        MPI_Win_unlock(0, MPI_WIN_NULL),
+                        MPI_Win_lock_all(0, MPI_WIN_NULL),
+                        MPI_Win_unlock_all(MPI_WIN_NULL),
+                        MPI_Win_flush(0, MPI_WIN_NULL),
+                        MPI_Win_flush_all(MPI_WIN_NULL),
+                        MPI_Win_flush_local(0, MPI_WIN_NULL),
+                        MPI_Win_flush_local_all(MPI_WIN_NULL),
+                        MPI_Win_sync(MPI_WIN_NULL)};
+    for (size_t i = 0; i < sizeof code / sizeof *code; i++) assert_int_equal(code[i], MPI_ERR_WIN);
+    MPI_Group_free(&all);
+}
+
+static void no_call_takes_the_null_window(void **state)
+{
+    (void)state;
+    mpi_ok(1, no_window, NULL);
+}
+
 /* ---- attributes ---- */
 
 /* A copy function that changes what is attached to the communicator that is copied. */
@@ -136,6 +211,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(empty_epochs_end_at_once_and_wrong_ones_are_refused),
+        cmocka_unit_test(an_exposure_ends_with_the_last_access),
+        cmocka_unit_test(no_call_takes_the_null_window),
         cmocka_unit_test(callbacks_may_change_what_is_attached),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,8 +19,8 @@
 #include "base/text.h"
 #include "store/image.h"
 #include "store/publish.h"
-#include "store/rank_times.h"
 #include "store/real_rows.h"
+#include "store/run_entries.h"
 
 static bool take_row(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -99,7 +99,7 @@ static void times_of_ranks_are_written_to_the_digit(void **state)
         struct text is = {0}, wanted = {0};
         text_add(&is, "before ");
         text_add(&wanted, "before ");
-        rank_times_add(&result, &is);
+        rank_entries(&result, &is);
         reference(&result, &wanted);
         assert_string_equal(is.s, wanted.s);
         assert_int_equal(is.length, wanted.length);
@@ -108,33 +108,49 @@ static void times_of_ranks_are_written_to_the_digit(void **state)
     }
 }
 
-/* Rows of the older table in any order, with less columns than there are today. */
-static void rows_of_older_databases_become_texts(void **state)
+/* ---- loads of links ---- */
+
+/* A number of a router or node, or the word for none. */
+static void number_or_null(struct text *t, int x)
 {
-    struct fixture *f = *state;
-    struct arena *a = arena_create();
-    struct store *s = store_open("passing", STORE_SCRATCH, &f->e);
-    for (int rep = 0; rep < 2; rep++) {
-        const struct run_spec spec = made_spec(a, "t3e-300", 4, 2, rep);
-        const struct run_result r = made_result(a, &spec);
-        if (!store_put(s, &spec, NULL, &r, &f->e)) fail_msg("%s", f->e.text);
+    if (x < 0) text_add(t, ",null");
+    else text_add(t, ",%d", x);
+}
+
+static void loads_of_links_are_written_in_their_order(void **state)
+{
+    (void)state;
+    struct link_load link[12];
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        struct random r = random_make(seed, 0, 0);
+        struct run_result result = {.nlink = (int)random_below(&r, 13), .link = link};
+        struct text is = {0}, wanted = {0};
+        text_add(&is, "before ");
+        text_add(&wanted, "before [");
+        for (int i = 0; i < result.nlink; i++) {
+            struct link_load *x = &link[i];
+            *x = (struct link_load){.from = (int)random_below(&r, 4) - 1,
+                                    .to = (int)random_below(&r, 4) - 1,
+                                    .node = (int)random_below(&r, 2000) - 1000,
+                                    .messages = odd_number(&r, true),
+                                    .bytes = odd_number(&r, true),
+                                    .busy_ps = odd_number(&r, false),
+                                    .queue_ps = odd_number(&r, false)};
+            if (x->node < 0) x->node = -1;
+            text_add(&wanted, "%s[%d", i > 0 ? "," : "", i);
+            number_or_null(&wanted, x->from);
+            number_or_null(&wanted, x->to);
+            number_or_null(&wanted, x->node);
+            text_add(&wanted, ",%lld,%lld,%lld,%lld]", (long long)x->messages, (long long)x->bytes,
+                     (long long)x->busy_ps, (long long)x->queue_ps);
+        }
+        text_add(&wanted, "]");
+        link_entries(&result, &is);
+        assert_string_equal(is.s, wanted.s);
+        assert_int_equal(is.length, wanted.length);
+        text_free(&is);
+        text_free(&wanted);
     }
-    if (!store_exec(s,
-                    "DELETE FROM rank_times; CREATE TABLE aside (flops INTEGER, stage INTEGER, "
-                    "run_id INTEGER, rank INTEGER, compute_ps INTEGER, wait_ps INTEGER);"
-                    "INSERT INTO aside VALUES (1, 0, 2, 1, 5, 6), (2, 10, 1, 0, 7, 8), (3, 9, 1, 0,"
-                    " 9, 10), (4, 0, 1, 1, 11, -12), (5, 2, 1, 0, 13, 9223372036854775807)",
-                    &f->e) ||
-        !rank_times_upgrade(s, "aside", &f->e))
-        fail_msg("%s", f->e.text);
-    assert_rows(s, "SELECT run_id, entries FROM rank_times ORDER BY run_id",
-                "1 [[0,2,13,0,0,9223372036854775807,0,0,0,5],[0,9,9,0,0,10,0,0,0,3],"
-                "[0,10,7,0,0,8,0,0,0,2],[1,0,11,0,0,-12,0,0,0,4]];2 [[1,0,5,0,0,6,0,0,0,1]]");
-    assert_rows(s, "SELECT run_id, rank, stage, wait_ps FROM rank_stage WHERE wait_ps < 0",
-                "1 1 0 -12");
-    assert_rows(s, "SELECT count(*) FROM sqlite_schema WHERE name = 'aside'", "0");
-    store_close(s);
-    arena_destroy(a);
 }
 
 /* ---- runs on real computers ---- */
@@ -402,7 +418,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(times_of_ranks_are_written_to_the_digit),
-        TEST(rows_of_older_databases_become_texts),
+        TEST(loads_of_links_are_written_in_their_order),
         TEST(a_measurement_comes_back_as_it_was),
         TEST(without_samples_there_are_no_times),
         TEST(a_measurement_is_stored_whole_or_not_at_all),
