@@ -117,6 +117,18 @@ void text_add_bytes(struct text *t, const char *s, size_t n)
     t->s[t->length] = '\0';
 }
 
+void text_add_integer(struct text *t, int64_t v)
+{
+    char digit[20];
+    size_t at = sizeof digit;
+    /* Unsigned, since the least integer has no positive counterpart. */
+    uint64_t rest = v < 0 ? -(uint64_t)v : (uint64_t)v;
+    do digit[--at] = (char)('0' + rest % 10);
+    while (rest /= 10);
+    if (v < 0) digit[--at] = '-';
+    text_add_bytes(t, digit + at, sizeof digit - at);
+}
+
 /* An empty text may be used again. */
 void text_free(struct text *t)
 {

@@ -351,11 +351,35 @@ bool units_parse(const char *text, enum unit unit, double *value, char *why, int
 static int whole_digits(double x, char digits[20], int *exponent)
 {
     char s[20];
-    int n = snprintf(s, sizeof s, "%" PRId64, (int64_t)x);
+    int n = 0;
+    uint64_t rest = (uint64_t)x;
+    /* By hand, last digit first: identities of runs consist of such numbers. */
+    do s[n++] = (char)('0' + rest % 10);
+    while (rest /= 10);
     *exponent = n - 1;
-    while (s[n - 1] == '0') n--;
-    memcpy(digits, s, (size_t)n);
-    return n;
+    int zeros = 0;
+    while (s[zeros] == '0') zeros++;
+    for (int i = 0; i < n - zeros; i++) digits[i] = s[n - 1 - i];
+    return n - zeros;
+}
+
+/* fraction_digits: those of m where x = m / 10^k with the least k; 0: not found. Both m < 10^15 and
+ * 10^k are doubles, so that one division gives what reading the decimal number gives (Clinger, PLDI
+ * 1990); and of numbers with up to 15 digits at most one reads back to x, since doubles lie
+ * closer. */
+static int fraction_digits(double x, char digits[20], int *exponent)
+{
+    static const double power[] = {1,    1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    for (int k = 1; k < (int)(sizeof power / sizeof *power) && x * power[k] < 1e15; k++) {
+        const double m = trunc(x * power[k] + 0.5);
+        if (m / power[k] != x) continue;
+        const int n = whole_digits(m, digits, exponent);
+        *exponent -= k;
+        return n;
+    }
+    return 0;
 }
 
 /* shortest_digits: the fewest decimal digits (without point) and the exponent of the first that
@@ -366,6 +390,7 @@ static int shortest_digits(double x, char digits[20], int *exponent)
     char s[40];
     int n = 0;
     if (x < 0x1p53 && x == trunc(x)) return whole_digits(x, digits, exponent);
+    if ((n = fraction_digits(x, digits, exponent)) > 0) return n;
     do snprintf(s, sizeof s, "%.*e", n++, x);
     while (n < 17 && strtod(s, NULL) != x);
     digits[0] = s[0];
@@ -374,13 +399,17 @@ static int shortest_digits(double x, char digits[20], int *exponent)
     return n;
 }
 
-/* decimal: x > 0 as digits times 10^-shift, in plain notation where that is short. Exact: only the
- * point moves. */
-static void decimal(double x, int shift, char *buffer, size_t size)
+/* decimal: (n) digits, the first of which stands for 10^exponent, in plain notation where that is
+ * short. */
+static void decimal(const char *digits, int n, int exponent, char *buffer, size_t size)
 {
-    char digits[20];
-    int exponent, n = shortest_digits(x, digits, &exponent);
-    exponent -= shift;
+    /* Most numbers of a configuration: a few digits, maybe with zeros behind. */
+    if (exponent >= n - 1 && exponent < 16) {
+        memcpy(buffer, digits, (size_t)n);
+        memset(buffer + n, '0', (size_t)(exponent + 1 - n));
+        buffer[exponent + 1] = '\0';
+        return;
+    }
     /* Plain notation only where it does not need long rows of zeros. */
     if (exponent < -5 || exponent > 16)
         snprintf(buffer, size, "%c%s%.*se%d", digits[0], n > 1 ? "." : "", n - 1, digits + 1,
@@ -395,15 +424,12 @@ static void decimal(double x, int shift, char *buffer, size_t size)
 }
 
 /* print_exponent: the power of 1000 of the prefix that leaves one to three digits before the point,
- * within the kind. */
-static int print_exponent(const struct kind *k, double x)
+ * within the kind; x begins with 10^exponent. */
+static int print_exponent(const struct kind *k, double x, int exponent)
 {
-    char digits[20];
-    int exponent;
     /* Kinds without a choice of prefixes; percent has a fixed one. */
     if (x == 0 || !isfinite(x) || k->print_min == k->print_max)
         return k->print_max < 0 ? k->print_min : 0;
-    shortest_digits(x, digits, &exponent);
     int thousands = (exponent >= 0 ? exponent : exponent - 2) / 3 * 3;
     if (thousands < k->print_min) return k->print_min;
     return thousands > k->print_max ? k->print_max : thousands;
@@ -422,20 +448,25 @@ void units_print(double value, enum unit unit, char *buffer, int size)
 {
     const struct kind *k = kind_of(unit);
     double x = fabs(value);
-    char number[64];
-    int e2 = 0, e10 = 0;
+    char number[64], digits[20];
+    int e2 = 0, e10 = 0, n = 0, exponent = 0;
     if (unit == UNIT_BYTES) /* sizes that are whole Ki, Mi, ... are meant so */
         while (e2 < 40 && x > 0 && x < 0x1p53 && fmod(x, 1024) == 0) {
             x /= 1024;
             e2 += 10;
         }
-    if (e2 == 0) e10 = print_exponent(k, x);
+    if (isfinite(x) && x != 0) n = shortest_digits(x, digits, &exponent);
+    if (e2 == 0) e10 = print_exponent(k, x, exponent);
     /* Not numbers that can be read; they appear in messages only. */
     if (!isfinite(x)) text_copy(number, sizeof number, isnan(x) ? "nan" : "inf");
     else if (x == 0) text_copy(number, sizeof number, "0");
-    else decimal(x, e10, number, sizeof number);
+    else decimal(digits, n, exponent - e10, number, sizeof number);
     /* The first symbol of the kind: the one that is printed. */
     const char *name = k->symbol[0].name ? k->symbol[0].name : "";
-    snprintf(buffer, (size_t)size, "%s%s%s%s%s", signbit(value) && !isnan(value) ? "-" : "", number,
-             name[0] ? " " : "", unit == UNIT_PERCENT ? "" : prefix_name(e10, e2), name);
+    const char *const piece[] = {signbit(value) && !isnan(value) ? "-" : "", number,
+                                 name[0] ? " " : "",
+                                 unit == UNIT_PERCENT ? "" : prefix_name(e10, e2), name};
+    size_t at = 0;
+    for (size_t i = 0; i < sizeof piece / sizeof *piece; i++)
+        text_copy(buffer + at, (size_t)size - at, piece[i]), at += strlen(buffer + at);
 }

@@ -120,6 +120,9 @@ void guard_library(void)
 {
     /* Refused, which is no harm, once the library is in use. */
     sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+    /* One thread of the process has databases; the threads of a run compute. A small run would take
+     * some twenty thousand locks that nobody else asks for. */
+    sqlite3_config(SQLITE_CONFIG_SINGLETHREAD);
 }
 
 bool guard_begin(struct store *s, struct err *e)

@@ -9,7 +9,7 @@
 #include "store/connection.h"
 
 /* guard_library: before the first database is opened: SQLite keeps no statistics of its memory,
- * which costs two locks for each block. */
+ * which costs two locks for each block, and takes no locks at all: one thread has databases. */
 void guard_library(void);
 
 /* guard_begin: right after opening, before anything is read: no function that a schema could misuse
