@@ -119,7 +119,8 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
     if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
         return false;
     /* From here on a crash, or a loop that calls nothing, is this program's. */
-    crash_watch(w->image, w->stack_bytes);
+    const char *job = w->spec->job.name;
+    crash_watch(w->image, w->stack_bytes, job[0] != '\0' ? job : NULL);
     crash_limit(p->host_limit > 0 ? p->host_limit : PROGRAM_HOST_LIMIT);
     /* Collectives by the rules of the machine's software, unless a rank chooses one by name. */
     if (!collective_rules_parse(w->spec->machine.software.collectives, w->rule, &w->nrule, why,
@@ -131,8 +132,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
 /* Watching ends before the image goes: a crash from here on is the simulator's. */
 void guest_world_close(struct guest_world *w)
 {
-    crash_limit(0);
-    crash_watch(NULL, 0);
+    crash_forget(w->image);
     loader_close(w->image);
     w->image = NULL;
 }

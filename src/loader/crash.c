@@ -1,9 +1,12 @@
 /* crash.c - catching crashes of loaded programs: what the signal handler writes down before the
  * worker ends.
  *
- * The handler needs to find its data without a global variable: they stand at the bottom of its own
- * stack, and the system tells where that is (sigaltstack). It calls nothing but what POSIX allows
- * in handlers, and reads the program's memory only where it is known to be mapped. */
+ * The handler finds its data at the bottom of its own stack (base/signal_stack.h). It calls nothing
+ * but what POSIX allows in handlers, and reads the program's memory only where it is known to be
+ * mapped.
+ *
+ * Several programs may run at once, each as a job of its own: whose ranks an address belongs to is
+ * looked for in all of them. */
 #include "loader/crash.h"
 
 #include <errno.h>
@@ -12,15 +15,14 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/time.h>
 #include <ucontext.h>
 #include <unistd.h>
 
+#include "base/signal_stack.h"
 #include "loader/template.h"
 
-enum { GUARD_BYTES = 64 * 1024, SCAN_WORDS = 4096 };
-static const uint64_t GUARD_MAGIC = UINT64_C(0x6372617368677264);
+enum { SCAN_WORDS = 4096 };
 
 /* Stacks of ranks are smaller than this; beyond it, an address has nothing to do with the stack. */
 static const uint64_t MOST_STACK = UINT64_C(1) << 30;
@@ -28,43 +30,46 @@ static const uint64_t MOST_STACK = UINT64_C(1) << 30;
 static const int signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF};
 enum { NSIGNAL = sizeof signals / sizeof *signals };
 
-/* The data at the bottom of the handler's stack. */
-struct guard {
-    uint64_t magic;
-    struct crash_record *record;
-    const struct loader_template *watched;
+/* A program whose ranks run. */
+struct watched {
+    const struct loader_template *t;
     int64_t stack_bytes; /* of its ranks */
-    double seconds;
-    struct sigaction before[NSIGNAL];
-    stack_t stack_before;
+    const char *job;     /* NULL: it has its machine alone */
 };
 
-/* The handler's data, by where the system keeps its stack; NULL where no guard has been set up,
- * or somebody else has put another stack there. */
-static struct guard *guard_of_process(void)
-{
-    stack_t s;
-    if (sigaltstack(NULL, &s) != 0 || (s.ss_flags & SS_DISABLE) || s.ss_size < sizeof(struct guard))
-        return NULL;
-    struct guard *g = s.ss_sp;
-    return s.ss_size == GUARD_BYTES && g->magic == GUARD_MAGIC ? g : NULL;
-}
+/* The data at the bottom of the handler's stack. */
+struct guard {
+    struct signal_stack stack; /* first */
+    struct crash_record *record;
+    double seconds;
+    struct sigaction before[NSIGNAL];
+    int nwatched;
+    struct watched watched[CRASH_PROGRAMS];
+};
+
+/* NULL where no guard has been set up, or somebody else has put another stack there. */
+static struct guard *guard_of_process(void) { return signal_stack_find(SIGNAL_STACK_CRASH); }
 
 /* The rank that ran: whose program text `pc` is, or, in the C library or the simulator, on whose
- * stack `sp` is: of the stacks that begin above it the nearest. */
-static const struct loader_instance *running_instance(const struct loader_template *t, uint64_t pc,
-                                                      uintptr_t sp)
+ * stack `sp` is: of the stacks that begin above it the nearest. *whose: its program. */
+static const struct loader_instance *running_instance(const struct guard *g, uint64_t pc,
+                                                      uintptr_t sp, const struct watched **whose)
 {
     const struct loader_instance *best = NULL;
     const char *file;
     uint64_t at;
     int rank;
-    if (loader_find_address(t, (void *)(uintptr_t)pc, &rank, &file, &at)) return &t->instance[rank];
-    for (int k = 0; k < t->nrank; k++) {
-        const struct loader_instance *i = &t->instance[k];
-        if (!i->base || !i->outermost || i->stack < sp || i->stack - sp > MOST_STACK) continue;
-        if (!best || i->stack < best->stack) best = i;
-    }
+    for (*whose = g->watched; *whose < g->watched + g->nwatched; (*whose)++)
+        if (loader_find_address((*whose)->t, (void *)(uintptr_t)pc, &rank, &file, &at))
+            return &(*whose)->t->instance[rank];
+    for (const struct watched *w = g->watched; w < g->watched + g->nwatched; w++)
+        for (int k = 0; k < w->t->nrank; k++) {
+            const struct loader_instance *i = &w->t->instance[k];
+            if (!i->base || !i->outermost || i->stack < sp || i->stack - sp > MOST_STACK) continue;
+            if (best && i->stack >= best->stack) continue;
+            best = i;
+            *whose = w;
+        }
     return best;
 }
 
@@ -124,23 +129,28 @@ static bool is_stack_overflow(const siginfo_t *info, const struct loader_instanc
 }
 
 /* Which rank ran, where in its program, and at which simulated time. */
-static void note_rank(struct crash_record *r, const struct loader_template *t,
-                      const siginfo_t *info, const ucontext_t *u, int *kind)
+static void note_rank(struct crash_record *r, const struct guard *g, const siginfo_t *info,
+                      const ucontext_t *u, int *kind)
 {
 #ifdef __x86_64__
     const uintptr_t sp = (uintptr_t)u->uc_mcontext.gregs[REG_RSP];
     const uint64_t pc = (uint64_t)u->uc_mcontext.gregs[REG_RIP];
-    const struct loader_instance *i = running_instance(t, pc, sp);
+    const struct watched *w;
+    const struct loader_instance *i = running_instance(g, pc, sp, &w);
     if (!i) return;
     r->rank = i->host.rank;
+    r->stack_bytes = w->stack_bytes;
+    /* Its name is memory of this process, of which the parent has a copy from before at most. */
+    for (size_t n = 0; w->job && w->job[n] != '\0' && n + 1 < sizeof r->job; n++)
+        r->job[n] = w->job[n];
     const bool overflow = *kind == CRASH_SIGNAL && is_stack_overflow(info, i, sp, r->stack_bytes);
     if (overflow) *kind = CRASH_STACK;
     /* At an overflow the words at the stack pointer are not there to be read. */
-    if (overflow) add_frame(r, t, pc);
+    if (overflow) add_frame(r, w->t, pc);
     else note_frames(r, i, pc, sp);
-    if (t->hooks->now_ps) r->now_ps = t->hooks->now_ps(i->context);
+    if (w->t->hooks->now_ps) r->now_ps = w->t->hooks->now_ps(i->context);
 #else
-    (void)r, (void)t, (void)info, (void)u, (void)kind;
+    (void)r, (void)g, (void)info, (void)u, (void)kind;
 #endif
 }
 
@@ -160,10 +170,11 @@ static void handle(int number, siginfo_t *info, void *context)
     r->address = (uint64_t)(uintptr_t)info->si_addr;
     r->now_ps = -1;
     r->seconds = g->seconds;
-    r->stack_bytes = g->stack_bytes;
+    r->stack_bytes = 0;
+    memset(r->job, 0, sizeof r->job);
     r->nframe = 0;
     atomic_store(&r->kind, kind);
-    if (g->watched) note_rank(r, g->watched, info, context, &kind);
+    note_rank(r, g, info, context, &kind);
     atomic_store(&r->kind, kind);
     _exit(CRASH_STATUS);
 }
@@ -171,19 +182,12 @@ static void handle(int number, siginfo_t *info, void *context)
 /* Everything that the handler will need is made here, where memory may be asked for. */
 bool crash_guard_begin(struct crash_record *record, struct err *e)
 {
-    struct guard *g =
-        mmap(NULL, GUARD_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (g == MAP_FAILED)
-        return err_set(e, ERR_INTERNAL, "no memory for a signal stack: %s", strerror(errno));
-    *g = (struct guard){.magic = GUARD_MAGIC, .record = record};
-    const stack_t s = {.ss_sp = g, .ss_size = GUARD_BYTES};
     /* The C library loads its unwinder at the first use, which is nothing for a handler. */
     void *here[1];
     (void)backtrace(here, 1);
-    if (sigaltstack(&s, &g->stack_before) != 0) {
-        munmap(g, GUARD_BYTES);
-        return err_set(e, ERR_INTERNAL, "no signal stack: %s", strerror(errno));
-    }
+    struct guard *g = signal_stack_make(SIGNAL_STACK_CRASH);
+    if (g == NULL) return err_set(e, ERR_INTERNAL, "no signal stack: %s", strerror(errno));
+    g->record = record;
     /* A fault inside the handler comes back to it (SA_NODEFER), sees the record begun, and ends the
      * process. */
     struct sigaction a = {.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER};
@@ -200,10 +204,7 @@ void crash_guard_end(void)
     if (!g) return;
     crash_limit(0);
     for (int i = 0; i < NSIGNAL; i++) sigaction(signals[i], &g->before[i], NULL);
-    stack_t before = g->stack_before;
-    if (!before.ss_sp) before.ss_flags = SS_DISABLE;
-    sigaltstack(&before, NULL);
-    munmap(g, GUARD_BYTES);
+    signal_stack_end(&g->stack);
 }
 
 /* Found as the handler finds it: there is no global variable. */
@@ -225,13 +226,24 @@ void crash_told(struct crash_record *record, const char *text)
     _exit(CRASH_STATUS);
 }
 
-/* Between runs nobody is watched: a fault is the simulator's own then. */
-void crash_watch(const struct loader_template *t, int64_t stack_bytes)
+void crash_watch(const struct loader_template *t, int64_t stack_bytes, const char *job)
+{
+    struct guard *g = guard_of_process();
+    if (!g || g->nwatched == CRASH_PROGRAMS) return;
+    g->watched[g->nwatched++] = (struct watched){t, stack_bytes, job};
+}
+
+/* Between runs nobody is watched: a fault is the simulator's own then, and takes as long as it
+ * likes. */
+void crash_forget(const struct loader_template *t)
 {
     struct guard *g = guard_of_process();
     if (!g) return;
-    g->watched = t;
-    g->stack_bytes = stack_bytes;
+    int kept = 0;
+    for (int i = 0; i < g->nwatched; i++)
+        if (g->watched[i].t != t) g->watched[kept++] = g->watched[i];
+    g->nwatched = kept;
+    if (kept == 0) crash_limit(0);
 }
 
 void crash_limit(double seconds)

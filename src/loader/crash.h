@@ -15,7 +15,8 @@
 #include "base/err.h"
 #include "loader/loader.h"
 
-enum { CRASH_FRAMES = 8, CRASH_PATH = 512, CRASH_TOLD_BYTES = 400, CRASH_STATUS = 72 };
+enum { CRASH_FRAMES = 8, CRASH_PATH = 512, CRASH_TOLD_BYTES = 480, CRASH_STATUS = 72 };
+enum { CRASH_PROGRAMS = 65, CRASH_JOB = 32 }; /* watched at a time: jobs and a serial code */
 
 enum crash_kind { CRASH_NONE, CRASH_SIGNAL, CRASH_STACK, CRASH_HOST_TIME, CRASH_TOLD };
 
@@ -24,6 +25,7 @@ struct crash_record {
     _Atomic int kind; /* enum crash_kind, stored last */
     int signal, code; /* of the signal, as in siginfo_t */
     int rank;         /* -1: not in a rank */
+    char job[CRASH_JOB]; /* of several on one machine; "": it has that alone */
     uint64_t address; /* the memory accessed, for SIGSEGV and SIGBUS */
     int64_t now_ps;   /* the rank's clock, -1: not known */
     int64_t stack_bytes; /* that each rank has */
@@ -54,9 +56,11 @@ void crash_guard_end(void);
 struct crash_record *crash_record_of_process(void);
 _Noreturn void crash_told(struct crash_record *record, const char *text);
 
-/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks of `stack_bytes`
- * each. Without a guard: no effect. */
-void crash_watch(const struct loader_template *t, int64_t stack_bytes);
+/* crash_watch: ranks of `t` run from now on; they are found by their stacks of `stack_bytes` each.
+ * `job`: its name, borrowed, where several programs share a machine, else NULL. crash_forget: they
+ * do not any more; behind the last there is no limit of time either. Without a guard: no effect. */
+void crash_watch(const struct loader_template *t, int64_t stack_bytes, const char *job);
+void crash_forget(const struct loader_template *t);
 
 /* crash_limit: end the process when it takes `seconds` of processor time from now on; 0: no limit.
  * Without a guard: no effect. */

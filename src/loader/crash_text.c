@@ -88,7 +88,7 @@ static void place_of(const struct crash_record *r, char *buffer, size_t size)
  * which may call almost nothing. */
 bool crash_text(const struct crash_record *r, char *buffer, int size)
 {
-    char what[256], where[512] = "", when[64] = "";
+    char what[256], where[512] = "", when[64] = "", whose[CRASH_JOB + 16] = "";
     const int kind = atomic_load(&r->kind);
     if (kind == CRASH_NONE) return false;
     if (kind == CRASH_TOLD) return snprintf(buffer, (size_t)size, "%s", r->told), true;
@@ -96,7 +96,10 @@ bool crash_text(const struct crash_record *r, char *buffer, int size)
     place_of(r, where, sizeof where);
     if (r->now_ps >= 0)
         snprintf(when, sizeof when, " after %.9g s of simulated time", 1e-12 * (double)r->now_ps);
-    if (r->rank >= 0) snprintf(buffer, (size_t)size, "rank %d%s: %s%s", r->rank, where, what, when);
+    /* Ranks are numbered within their job. */
+    if (r->job[0] != '\0') snprintf(whose, sizeof whose, "job '%s', ", r->job);
+    if (r->rank >= 0)
+        snprintf(buffer, (size_t)size, "%srank %d%s: %s%s", whose, r->rank, where, what, when);
     else snprintf(buffer, (size_t)size, "outside of the ranks' programs: %s", what);
     return true;
 }

@@ -149,6 +149,7 @@ bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec 
         if (!j->r) continue;
         load[i] = load_of(j->r, j->largest);
         load[i].working_set = working_set(j->r);
+        if (!load[i].foreign && !rank_stack_set(&load[i], e)) return false;
         l[i] = (struct launch){j->r->rank, j->r->job, make_workspaces(j->r, &load[i], j->scratch)};
         load[i].context = &l[i];
         own[i].load = &load[i];

@@ -14,6 +14,7 @@
 #include "machine/node_use.h"
 #include "machine/placement_jobs.h"
 #include "measure/run_heartbeat.h"
+#include "sim/stack_fault.h"
 #include "vp/explain.h"
 #include "vp/offload.h"
 #include "vp/team.h"
@@ -34,14 +35,14 @@ struct jobs {
 /* What holds for all ranks together: the largest stack, and the weakest promise. */
 static void make_load(struct jobs *j, struct run_heartbeat *heartbeat, struct arena *scratch)
 {
-    j->load = (struct world_load){.heartbeat = heartbeat, .scratch = scratch,
-                                  .stack_bytes = WORLD_STACK_BYTES};
+    j->load = (struct world_load){.heartbeat = heartbeat, .scratch = scratch};
     for (int i = 0; i < j->n; i++) {
         const struct world_load *l = j->job[i].load;
         if (!l) continue;
         j->load.nrank += l->nrank;
         j->links = j->links || j->job[i].record->links;
-        if (l->stack_bytes > j->load.stack_bytes) j->load.stack_bytes = l->stack_bytes;
+        const int64_t stack = l->stack_bytes > 0 ? l->stack_bytes : WORLD_STACK_BYTES;
+        if (stack > j->load.stack_bytes) j->load.stack_bytes = stack;
     }
 }
 
@@ -156,21 +157,45 @@ static void make_ranks(struct jobs *j)
         if (j->job[i].load) world_make_ranks(&j->world[i], j->job[i].seed);
 }
 
+/* The world whose rank has stack `fiber`, and that rank: stacks are numbered over all jobs, ranks
+ * within their own. -1: of none. */
+static int owner_of(const struct jobs *j, int fiber, int *rank)
+{
+    for (int i = 0; i < j->n; i++) {
+        if (!j->job[i].load) continue;
+        *rank = fiber - (int)(j->world[i].vp - j->whole.vp);
+        if (*rank >= 0 && *rank < j->world[i].nrank) return i;
+    }
+    return -1;
+}
+
+/* In a signal handler: the rank's stack is at its end, nothing is known of the rest. Programs of
+ * users are told of by whoever loads them. */
+static void tell_overflow(void *context, int fiber)
+{
+    const struct jobs *j = context;
+    char text[480];
+    int rank, at = owner_of(j, fiber, &rank);
+    if (at < 0 || !j->world[at].load->overflowed || j->world[at].load->foreign) return;
+    const int n = snprintf(text, sizeof text, "job '%.31s', ", j->job[at].name);
+    world_stack_text(&j->world[at], rank, text + n, sizeof text - (size_t)n);
+    j->world[at].load->overflowed(j->world[at].load->overflow_context, text);
+}
+
 /* A rank whose stack was too small, or a message that nobody took, spoils what all have found. */
 static void look_for_damage(struct jobs *j)
 {
-    int rank;
-    const int64_t peak = fiber_pool_stack_peak(j->whole.fibers, &rank);
+    int fiber, rank = -1;
+    const int64_t peak = fiber_pool_stack_peak(j->whole.fibers, &fiber);
+    const int beyond = fiber >= 0 ? owner_of(j, fiber, &rank) : -1;
     for (int i = 0; i < j->n; i++) {
         struct world *w = &j->world[i];
         if (!j->job[i].load) continue;
         w->result->stack_peak_bytes = peak;
-        /* Stacks are numbered over all jobs, ranks within their own. */
-        const int own = rank - (int)(w->vp - j->whole.vp);
         if (!j->whole.failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
-        if (j->whole.failed || rank < 0 || own < 0 || own >= w->nrank) continue;
+        if (j->whole.failed || i != beyond) continue;
         j->whole.failed = w->failed = true;
-        world_stack_text(w, own, w->result->text, sizeof w->result->text);
+        world_stack_text(w, rank, w->result->text, sizeof w->result->text);
     }
 }
 
@@ -226,8 +251,10 @@ static void run(struct jobs *j, uint64_t seed)
     const double begin = host_seconds();
     world_begin_heartbeat(w, begin);
     make_ranks(j);
+    w->fault = stack_fault_begin(w->fibers, tell_overflow, j);
     background_start(w, seed);
     world_loop(w);
+    stack_fault_end(w->fault);
     /* Every job's row has the time of all: they were simulated together. */
     const double taken = host_seconds() - begin;
     for (int i = 0; i < j->n; i++)

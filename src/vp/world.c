@@ -110,7 +110,7 @@ static int64_t stack_bytes(const struct world *w)
     return w->load->stack_bytes > 0 ? w->load->stack_bytes : WORLD_STACK_BYTES;
 }
 
-/* What to do depends on whose program it is. */
+/* What to do depends on whose program it is. Several jobs have stacks of one size. */
 void world_stack_text(const struct world *w, int rank, char *text, size_t size)
 {
     char named[64] = "";
@@ -118,7 +118,7 @@ void world_stack_text(const struct world *w, int rank, char *text, size_t size)
         snprintf(named, sizeof named, "kernel %.40s, ", w->load->name);
     snprintf(text, size,
              "%srank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s",
-             named, rank, w->nrank, (long long)stack_bytes(w) / 1024,
+             named, rank, w->nrank, (long long)stack_bytes(w->whole) / 1024,
              w->load->foreign ? ".stack_bytes in the program's declaration gives every rank more"
                               : "the environment variable MIMDSIM_STACK (such as '256 KiB') gives "
                                 "every rank more, and with fewer bodies for each rank, thus more "

@@ -35,6 +35,44 @@ small() { mimdsim run speedup-t3e -o t.db --quiet --set level=loggp --set kernel
     stderr_says " of 65536: stack overflow"
 }
 
+# Two built-in jobs, of which the second needs more than a page of stack.
+several() {
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'machine.topology.dims: [8, 4]' 'level: loggp' 'jobs:' \
+        '  - {name: light, kernel: barrier, ranks: 4}' \
+        '  - {name: deep, kernel: {name: dynamics, precision: quad}, n: 8, ranks: 8}' "$@" >s.yaml
+    mimdsim run s.yaml -o t.db --quiet --jobs "$jobs"
+}
+
+@test "of several jobs the one whose stack is not enough is told by its name" {
+    export MIMDSIM_STACK='4 KiB'
+    jobs=1 fails_with 70 several
+    stderr_says "mimdsim: job 'deep', kernel dynamics, rank "
+    stderr_says " of 8: stack overflow: it has used more than its stack of 4 KiB"
+    jobs=2 fails_with 1 several
+    sql_is t.db "SELECT count(*) FROM run WHERE status = 'failed' AND text LIKE
+        'job ''deep'', kernel dynamics, rank % of 8: stack overflow: it has used more than its stack of 4 KiB; %'" 2
+    MIMDSIM_STACK='256 KiB' jobs=2 works several
+    sql_is t.db "SELECT count(*) FROM run WHERE status = 'ok'" 2
+}
+
+@test "beside a program of one's own, too, whose faults stay its own" {
+    command -v gcc >there || skip 'no gcc'
+    cat >bad.c <<'C'
+#include <mimdsim/program.h>
+static int *volatile nowhere;
+static void run(struct comm *c)
+{
+    comm_barrier(c);
+    if (comm_rank(c) == 1) *nowhere = 1;
+}
+PROGRAM(.title = "writes nowhere", .run = run, .stack_bytes = 16384);
+C
+    sed 's/ \*nowhere = 1/ comm_publish(c, 0, 0, 0, NULL)/' bad.c >good.c
+    jobs=2 fails_with 1 several '  - {name: own, program: bad.c, ranks: 4}' '  - {name: fine, program: good.c, ranks: 4}'
+    sql_is t.db "SELECT count(*) FROM run WHERE status = 'failed' AND text LIKE
+        'job ''own'', rank 1 in run (bad.c:6): segmentation fault at address 0x0 %'" 4
+}
+
 @test "the size of a stack acts on no result" {
     works small --set n=16 --jobs 1 -o one.db
     MIMDSIM_STACK='1 MiB' works small --set n=16 --jobs 1 -o two.db

@@ -124,7 +124,7 @@ bool guests_run(const char *path, int nrank, int n, char **argument, struct gues
     }
     struct fiber_pool *p = fiber_pool_create(nrank, 8 << 20, &g->error);
     assert_non_null(p);
-    crash_watch(t, 1 << 20);
+    crash_watch(t, 1 << 20, NULL);
     struct rank rank[GUEST_RANKS];
     for (int i = 0; i < nrank; i++) {
         rank[i] = (struct rank){.g = g, .number = i, .n = n, .argument = argument};
@@ -137,7 +137,7 @@ bool guests_run(const char *path, int nrank, int n, char **argument, struct gues
         for (int i = 0; i < nrank; i++)
             if (!rank[i].over && fiber_enter(rank[i].fiber) && !rank[i].over) left++;
     }
-    crash_watch(NULL, 0);
+    crash_forget(t);
     fiber_pool_destroy(p);
     loader_close(t);
     return true;
