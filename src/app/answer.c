@@ -39,8 +39,8 @@ struct table {
     struct arena *arena;
     int nof, nover, against; /* against: column, -1: none */
     struct mark *of, *over;  /* (nof), (nover) */
-    struct cell *cell;       /* (nover x nof), room for all runs in each direction */
-    int room;
+    struct cell *cell;       /* (nover x nof) */
+    double *best;            /* (nover) without the column `against`; NAN: no results */
     enum unit unit; /* of the goal */
     int missing;    /* runs without a result */
 };
@@ -82,10 +82,9 @@ static int place_of(struct mark *list, int *n, struct mark m)
     return (*n)++;
 }
 
-/* Lines are as long as there are columns in the whole plan, so that a place is a product. */
 static struct cell *cell_at(const struct table *t, int over, int of)
 {
-    return &t->cell[(size_t)over * (size_t)t->room + (size_t)of];
+    return &t->cell[(size_t)over * (size_t)t->nof + (size_t)of];
 }
 
 /* The goal there; NAN: no run ended well. */
@@ -136,25 +135,66 @@ static bool find_against(struct table *t, struct err *e)
                       near != NULL ? "'?" : "");
 }
 
-/* A plan is at most as wide and as long as it has runs, and mostly much less of both. */
+/* How many times worse x is than `than`; 1: the same. */
+static double worse(const struct table *t, double x, double than)
+{
+    return t->asked->greatest ? than / x : x / than;
+}
+
+/* The least or greatest value of a line, without the column `against`; NAN: no results. */
+static double best_value(const struct table *t, int over)
+{
+    double best = NAN;
+    for (int k = 0; k < t->nof; k++) {
+        const double x = value_at(t, over, k);
+        if (isnan(x) || k == t->against) continue;
+        if (isnan(best) || worse(t, x, best) < 1) best = x;
+    }
+    return best;
+}
+
+/* As many values as a sentence can be made of: all are compared with each other. */
+enum { MOST_VALUES = 4096, MOST_CELLS = 1 << 20 };
+
+/* The values of `of` and `over` in the plan, in its order. Whether they are too many is known as
+ * soon as they are, and before any run. */
+static bool list_values(const struct plan *p, struct table *t, struct err *e)
+{
+    const struct plan_answer *a = p->answer;
+    struct mark *of = TAKE(t->arena, MOST_VALUES + 1, struct mark),
+                *over = TAKE(t->arena, MOST_VALUES + 1, struct mark);
+    for (int i = 0; i < p->nrun; i++) {
+        place_of(of, &t->nof, mark_of(&p->run[i], a->of, t->arena));
+        place_of(over, &t->nover, mark_of(&p->run[i], a->over, t->arena));
+        if (t->nof <= MOST_VALUES && t->nover <= MOST_VALUES && t->nof <= MOST_CELLS / t->nover)
+            continue;
+        char each[128] = "";
+        if (a->over)
+            snprintf(each, sizeof each, " for each of %d of '%.80s'", t->nover, a->over_word);
+        return err_set_at(e, ERR_CONFIG, a->file, a->line,
+                          "answer: %d values of '%.80s'%s, or more, are too many to compare; "
+                          "expected at most %d of each, and %d pairs",
+                          t->nof, a->of_word, each, MOST_VALUES, MOST_CELLS);
+    }
+    t->of = of;
+    t->over = over;
+    return true;
+}
+
+/* The runs of the plan as they are stored, each in its cell. */
 static bool table_make(struct table *t, const struct plan *p, struct store *s, struct arena *a,
                        struct err *e)
 {
     *t = (struct table){.asked = p->answer, .arena = a};
-    /* Columns are counted first, so that the table has no more. */
-    struct mark *of = TAKE(a, p->nrun + 1, struct mark), *over = TAKE(a, p->nrun + 1, struct mark);
-    int nof = 0, nover = 0;
-    for (int i = 0; i < p->nrun; i++) {
-        place_of(of, &nof, mark_of(&p->run[i], p->answer->of, a));
-        place_of(over, &nover, mark_of(&p->run[i], p->answer->over, a));
-    }
-    t->of = TAKE(a, nof + 1, struct mark);
-    t->over = TAKE(a, nover + 1, struct mark);
-    t->room = nof;
-    t->cell = TAKE(a, size_product(nof + 1, nover + 1), struct cell);
+    if (!list_values(p, t, e)) return false;
+    t->cell = TAKE(a, size_product(t->nof, t->nover), struct cell);
     for (int i = 0; i < p->nrun; i++)
         if (!add_run(t, &p->run[i], s, e)) return false;
-    return find_against(t, e);
+    if (!find_against(t, e)) return false;
+    /* Each line's best is asked for once for each column. */
+    t->best = TAKE(a, t->nover, double);
+    for (int i = 0; i < t->nover; i++) t->best[i] = best_value(t, i);
+    return true;
 }
 
 /* ---- clauses ---- */
@@ -170,12 +210,6 @@ static void add_goal(const struct plan_answer *a, struct text *out)
 {
     const char *name = goal_name(a), *unit = strstr(name, " [");
     text_add_bytes(out, name, unit != NULL ? (size_t)(unit - name) : strlen(name));
-}
-
-/* How many times worse x is than `than`; 1: the same. */
-static double worse(const struct table *t, double x, double than)
-{
-    return t->asked->greatest ? than / x : x / than;
 }
 
 /* The last two words of a key say enough: link.bandwidth. */
@@ -210,23 +244,11 @@ static void add_times(double least, double most, struct text *out)
     text_add(out, " times");
 }
 
-/* The least or greatest value of a line, without the column `against`; NAN: no results. */
-static double best_value(const struct table *t, int over)
-{
-    double best = NAN;
-    for (int k = 0; k < t->nof; k++) {
-        const double x = value_at(t, over, k);
-        if (isnan(x) || k == t->against) continue;
-        if (isnan(best) || worse(t, x, best) < 1) best = x;
-    }
-    return best;
-}
-
 /* Whether column k has the best value of the line, or one that prints alike. */
 static bool is_best(const struct table *t, int over, int k)
 {
     const double x = value_at(t, over, k);
-    return k != t->against && !isnan(x) && worse(t, x, best_value(t, over)) < 1 + 1e-6;
+    return k != t->against && !isnan(x) && worse(t, x, t->best[over]) < 1 + 1e-6;
 }
 
 /* How many lines from `first` on column k is best on. */
@@ -366,8 +388,13 @@ bool answer_check(const struct plan *p, struct err *e)
 {
     struct expression_value v;
     const struct plan_answer *a = p->answer;
-    return a == NULL ||
-           outcome_value(a->goal, &p->run[0], &outcome_unknown, "answer", a->file, a->line, &v, e);
+    if (a == NULL) return true;
+    struct table t = {.asked = a, .arena = arena_create()};
+    const bool ok =
+        list_values(p, &t, e) &&
+        outcome_value(a->goal, &p->run[0], &outcome_unknown, "answer", a->file, a->line, &v, e);
+    arena_destroy(t.arena);
+    return ok;
 }
 
 bool answer_sentence(const struct plan *p, struct store *s, struct text *out, struct err *e)

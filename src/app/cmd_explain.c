@@ -124,36 +124,68 @@ static void print_run(const struct run_spec *s, const struct run_estimate *r)
     text_free(&form);
 }
 
-/* Which runs go on several host threads, and why others do not; reasons are constant texts, so that
- * equal ones are one pointer or a few. */
+/* A text and the run that has it. */
+struct said {
+    const char *text;
+    int run;
+};
+
+static int compare_said(const void *a, const void *b)
+{
+    const struct said *x = a, *y = b;
+    const int order = strcmp(x->text, y->text);
+    return order != 0 ? order : (x->run > y->run) - (x->run < y->run);
+}
+
+/* How many runs have the text of run i, at the first that has it; 0 at others, and at those without
+ * one ("" or NULL). Sorted, as a plan of 100,000 runs may have as many texts. To be freed. */
+static int *count_said(const struct plan *p, const char *const *said)
+{
+    int *count = memory_zeroed((size_t)p->nrun + 1, sizeof *count), n = 0, first = 0;
+    struct said *sorted = memory_zeroed((size_t)p->nrun + 1, sizeof *sorted);
+    for (int i = 0; i < p->nrun; i++)
+        if (said[i] && said[i][0] != '\0') sorted[n++] = (struct said){said[i], i};
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_said);
+    for (int i = 0; i < n; i++) {
+        if (strcmp(sorted[i].text, sorted[first].text) != 0) first = i;
+        count[sorted[first].run]++;
+    }
+    free(sorted);
+    return count;
+}
+
+/* Which runs go on several host threads, and why others do not. */
 static void print_threads(const struct plan *p, const struct run_estimate *r)
 {
+    const char **said = memory_zeroed((size_t)p->nrun + 1, sizeof *said);
     int several = 0;
-    for (int i = 0; i < p->nrun; i++) several += r[i].threads > 1;
-    if (several > 0) printf("on several threads: %d of %d runs\n", several, p->nrun);
     for (int i = 0; i < p->nrun; i++) {
-        int same = 0;
-        bool told = false;
-        for (int k = 0; r[i].alone && k < p->nrun; k++)
-            if (r[k].alone && strcmp(r[k].alone, r[i].alone) == 0) same++, told = told || k < i;
-        if (r[i].alone && !told)
-            printf("on one thread: %d of %d runs: %s\n", same, p->nrun, r[i].alone);
+        several += r[i].threads > 1;
+        said[i] = r[i].alone;
     }
+    int *count = count_said(p, said);
+    if (several > 0) printf("on several threads: %d of %d runs\n", several, p->nrun);
+    for (int i = 0; i < p->nrun; i++)
+        if (count[i] > 0)
+            printf("on one thread: %d of %d runs: %s\n", count[i], p->nrun, r[i].alone);
+    free(count);
+    free(said);
 }
 
 /* What computing costs by: each text once, with the number of runs that it is true of. */
 static void print_nodes(const struct plan *p, const struct run_estimate *r)
 {
+    const char **said = memory_zeroed((size_t)p->nrun + 1, sizeof *said);
+    for (int i = 0; i < p->nrun; i++) said[i] = r[i].node;
+    int *count = count_said(p, said);
     for (int i = 0; i < p->nrun; i++) {
-        int same = 0;
-        bool told = r[i].node[0] == '\0';
-        for (int k = 0; !told && k < p->nrun; k++)
-            if (strcmp(r[k].node, r[i].node) == 0) same++, told = k < i;
-        if (told) continue;
+        if (count[i] == 0) continue;
         printf("computing");
-        if (same < p->nrun) printf(" (%d of %d runs)", same, p->nrun);
+        if (count[i] < p->nrun) printf(" (%d of %d runs)", count[i], p->nrun);
         printf(": %s\n", r[i].node);
     }
+    free(count);
+    free(said);
 }
 
 /* The jobs of the first point; those of others differ by what is swept. */

@@ -4,6 +4,7 @@
  * The scenario's jobs are run alone, in pairs and all together, which are runs like any others.
  * What the others load the network with is then known from their link loads, and each job is run
  * once more, alone, with that much random traffic in their place: the cheap way, with its error. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,8 +32,9 @@ static const char doc[] =
 /* SAMPLES: of the background, which is drawn by chance. */
 enum { SAMPLES = 5 };
 
-/* The largest load that a machine file may state. */
-static const double MOST_LOAD = 0.95;
+/* The largest load, and the largest message of it, that a machine file may state. Rows may have
+ * been written by others. */
+static const double MOST_LOAD = 0.95, MOST_BYTES = 1 << 30;
 
 struct request {
     const struct common *common;
@@ -97,7 +99,7 @@ static const char traffic_sql[] =
     "v_setting w ON w.run_id = v.run_id AND w.key = 'job.set' AND w.value = ?1 JOIN v_setting m ON "
     "m.run_id = v.run_id AND m.key = 'job.name' AND m.value = n.value WHERE v.key = 'job.beside')) "
     "SELECT total(1.0 * l.busy_ps / o.makespan_ps) / count(DISTINCT l.link), 1.0 * "
-    "sum(l.sent_bytes) / nullif(sum(l.messages), 0) FROM link_load l JOIN other o ON o.id = "
+    "total(l.sent_bytes) / nullif(total(l.messages), 0) FROM link_load l JOIN other o ON o.id = "
     "l.run_id WHERE l.from_router IS NOT NULL AND l.to_router IS NOT NULL AND o.makespan_ps > 0";
 
 /* The run alone with that much traffic of strangers; false: it has none to be beside. */
@@ -113,7 +115,7 @@ static bool background_of(struct request *r, const struct run_spec *alone, struc
     *run = *alone;
     /* The links of a machine file are never busy all the time. */
     run->machine.noise.background_load = t.load < MOST_LOAD ? t.load : MOST_LOAD;
-    run->machine.noise.background_bytes = t.bytes >= 1 ? (int64_t)t.bytes : 1;
+    run->machine.noise.background_bytes = (int64_t)fmin(fmax(t.bytes, 1), MOST_BYTES);
     memset(run->job.beside, 0, sizeof run->job.beside);
     text_copy(run->job.beside, sizeof run->job.beside, "background");
     /* Another machine than before, in what it is called and in what it differs by. */

@@ -131,6 +131,8 @@ static bool take_number(struct lab *l, const struct node *list, const char *path
         for (uint64_t i = 0; i < place; i++) chosen = chosen->next;
         value = chosen->text;
     }
+    if (value == NULL)
+        return err_set_at(e, ERR_DATA, path, list->line, "%s: expected numbers", list->key);
     l->number[l->nnumber++] = (struct lab_number){list->key, value};
     return true;
 }
@@ -214,6 +216,8 @@ static bool take_picture(struct lab *l, const struct node *root, const char *pat
     for (const struct node *n = set != NULL ? set->child : NULL; n != NULL; n = n->next) {
         if (l->picture.nset == LAB_SETS)
             return err_set_at(e, ERR_DATA, path, n->line, "more than %d settings", LAB_SETS);
+        if (n->text == NULL)
+            return err_set_at(e, ERR_DATA, path, n->line, "picture: expected KEY=VALUE");
         l->picture.set[l->picture.nset++] = filled(l, n->text, a);
     }
     return true;
@@ -245,8 +249,12 @@ static bool take_slider(struct lab *l, const struct node *n, const char *path, s
     struct lab_slider *s = &l->slider[l->nslider++];
     *s = (struct lab_slider){.text = document_text(n, "text"), .key = document_text(n, "key")};
     number[s->nvalue++] = own;
-    for (const struct node *v = values->child; v != NULL; v = v->next)
+    for (const struct node *v = values->child; v != NULL; v = v->next) {
+        if (v->text == NULL)
+            return err_set_at(e, ERR_DATA, path, v->line, "slider '%s': expected a list of numbers",
+                              n->key);
         if (atof(v->text) != atof(own)) number[s->nvalue++] = v->text;
+    }
     /* From small to large, whatever the student's own number is. */
     qsort(number, (size_t)s->nvalue, sizeof *number, by_size);
     for (int i = 0; i < s->nvalue; i++) {

@@ -43,7 +43,8 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
         }
         t->nnode = (int)nnode;
     }
-    if (s->nfailed_link + s->nfailed_router > 0 && !topology_fail(t, a, e)) return NULL;
+    if (s->nfailed_link + s->nfailed_router > 0 && !topology_fail(t, TOPOLOGY_KEPT_BYTES, a, e))
+        return NULL;
     return t;
 }
 

@@ -21,6 +21,10 @@
 /* Where a way stands: going up or down for the first time, and the same for the second. */
 enum phase { UP, DOWN, UP_AGAIN, DOWN_AGAIN, PHASES };
 
+/* What a network may have: each link takes 21 bytes here, each router 60, and a search for the ways
+ * to one target passes over all of it four times (30 ms for 100,000 routers). */
+enum { MOST_ROUTERS = 1 << 17, MOST_LINKS = 1 << 24 };
+
 /* Routers up to which the longest way around is found by searching from all; above, it is bounded
  * by going up to the first router and down. */
 enum { EXACT_ROUTERS = 512 };
@@ -33,7 +37,9 @@ struct failed {
     int *first_out, *out;  /* working links that leave router r: out[first_out[r]] ... */
     int *first_in, *in;    /* and that lead to it */
     int *level;            /* (nrouter) distance from the first working router, -1: none */
-    int **next; /* (nrouter) per target: (nrouter x PHASES) the link to take; NULL until needed */
+    int **next; /* (nrouter) per target: (nrouter x PHASES) the link to take; NULL: not kept */
+    int *kept, nkept, most_kept; /* (most_kept) targets whose ways are, a ring: the oldest .. */
+    int oldest;                  /* .. gives its place to the next */
     int *distance, *queue; /* (nrouter x PHASES) of the search */
 };
 
@@ -73,12 +79,26 @@ static void search(struct failed *f, int target)
     }
 }
 
+/* Memory for the ways to one more target, maybe that of the one that was asked for longest ago. */
+static int *make_room(struct failed *f, int target)
+{
+    if (f->nkept < f->most_kept) {
+        f->kept[f->nkept++] = target;
+        return TAKE(f->arena, f->whole->nrouter * PHASES, int);
+    }
+    int *place = f->next[f->kept[f->oldest]];
+    f->next[f->kept[f->oldest]] = NULL;
+    f->kept[f->oldest] = target;
+    f->oldest = (f->oldest + 1) % f->most_kept;
+    return place;
+}
+
 /* Of links that are equally good the one with the lowest number. */
 static const int *ways_to(struct failed *f, int target)
 {
     if (f->next[target]) return f->next[target];
-    const int n = f->whole->nrouter, states = n * PHASES;
-    int *next = TAKE(f->arena, states, int);
+    const int n = f->whole->nrouter;
+    int *next = make_room(f, target);
     search(f, target);
     for (int r = 0; r < n; r++)
         for (int phase = 0; phase < PHASES; phase++) {
@@ -169,8 +189,10 @@ static void joined_to(const struct failed *f, int router, struct text *out)
 {
     enum { MOST_TOLD = 8 };
     int told = 0;
-    for (int l = 0; l < f->whole->nlink && told < MOST_TOLD; l++)
-        if (f->from[l] == router) text_add(out, "%s%d", told++ > 0 ? ", " : "", f->to[l]);
+    const bool there = router >= 0 && router < f->whole->nrouter;
+    const int begin = there ? f->first_out[router] : 0, end = there ? f->first_out[router + 1] : 0;
+    for (int i = begin; i < end && told < MOST_TOLD; i++)
+        text_add(out, "%s%d", told++ > 0 ? ", " : "", f->to[f->out[i]]);
     if (told == MOST_TOLD) text_add(out, ", ...");
     if (told == 0) text_add(out, "none");
 }
@@ -178,8 +200,10 @@ static void joined_to(const struct failed *f, int router, struct text *out)
 /* The next working link from a to b; parallel ones fail one after the other. */
 static int working_link(const struct failed *f, int a, int b)
 {
-    for (int l = 0; l < f->whole->nlink; l++)
-        if (!f->dead_link[l] && f->from[l] == a && f->to[l] == b) return l;
+    const int n = f->whole->nrouter;
+    if (a < 0 || a >= n) return -1;
+    for (int i = f->first_out[a]; i < f->first_out[a + 1]; i++)
+        if (!f->dead_link[f->out[i]] && f->to[f->out[i]] == b) return f->out[i];
     return -1;
 }
 
@@ -226,6 +250,7 @@ static bool fail_routers(struct failed *f, const struct topology_spec *s, struct
 static void index_links(const struct failed *f, const int *end, int *first, int *list)
 {
     int n = f->whole->nrouter;
+    memset(first, 0, (size_t)(n + 1) * sizeof *first);
     for (int l = 0; l < f->whole->nlink; l++) first[end[l] + 1] += !f->dead_link[l];
     for (int r = 0; r < n; r++) first[r + 1] += first[r];
     /* Filled from the front; afterwards first[r] is where r + 1 begins, and is moved back. */
@@ -288,7 +313,8 @@ static int longest_way(struct failed *f)
     return longest;
 }
 
-static struct failed *failed_make(const struct topology *whole, struct arena *a)
+static struct failed *failed_make(const struct topology *whole, int64_t kept_bytes,
+                                  struct arena *a)
 {
     const int n = whole->nrouter, nlink = whole->nlink, states = n * PHASES;
     struct failed *f = TAKE(a, 1, struct failed);
@@ -304,6 +330,10 @@ static struct failed *failed_make(const struct topology *whole, struct arena *a)
     f->in = TAKE(a, nlink + 1, int);
     f->level = TAKE(a, n, int);
     f->next = TAKE(a, n, int *);
+    /* At least one, in which the next way is looked up that is needed. */
+    const int64_t kept = kept_bytes / ((int64_t)states * (int64_t)sizeof(int));
+    f->most_kept = kept < 1 ? 1 : kept < n ? (int)kept : n;
+    f->kept = TAKE(a, f->most_kept, int);
     f->distance = TAKE(a, states, int);
     f->queue = TAKE(a, states, int);
     for (int l = 0; l < nlink; l++)
@@ -311,16 +341,18 @@ static struct failed *failed_make(const struct topology *whole, struct arena *a)
     return f;
 }
 
-bool topology_fail(struct topology *t, struct arena *a, struct err *e)
+bool topology_fail(struct topology *t, int64_t kept_bytes, struct arena *a, struct err *e)
 {
-    /* As many routers as have four phases each in an int; larger ones would need wider numbers. */
-    if (t->nrouter > INT32_MAX / PHASES || t->nrouter < 2)
+    if (t->nrouter > MOST_ROUTERS || t->nrouter < 2 || t->nlink > MOST_LINKS)
         return err_set(e, ERR_CONFIG,
-                       "network.failed: topology %s has %d routers; expected 2 to %d",
-                       t->type->name, t->nrouter, INT32_MAX / PHASES);
+                       "network.failed: topology %s has %d routers and %d links; expected 2 to %d "
+                       "routers and at most %d links",
+                       t->type->name, t->nrouter, t->nlink, MOST_ROUTERS, MOST_LINKS);
     struct topology *whole = TAKE(a, 1, struct topology);
     *whole = *t;
-    struct failed *f = failed_make(whole, a);
+    struct failed *f = failed_make(whole, kept_bytes, a);
+    /* Once while everything works, to find the links that do not; then without them. */
+    index_links(f, f->from, f->first_out, f->out);
     if (!fail_links(f, t->spec, e) || !fail_routers(f, t->spec, e)) return false;
     index_links(f, f->from, f->first_out, f->out);
     index_links(f, f->to, f->first_in, f->in);

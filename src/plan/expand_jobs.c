@@ -222,16 +222,13 @@ static void name_others(const struct scenario_jobs *jobs, const bool *runs, int 
     text_free(&t);
 }
 
-/* The runs of one combination, behind each other; how many, -1 with x->err. */
+/* The runs of one combination, behind each other; how many, -1 with x->err. `room`: why the jobs do
+ * not fit, NULL: they do. */
 static int add_combination(struct expansion *x, const struct combination *c,
                            const struct run_spec *job, const struct job_set *all,
-                           const char *digest, struct run_spec *run)
+                           const char *digest, const struct err *room, struct run_spec *run)
 {
     struct arena *a = x->plan->arena;
-    /* Jobs that do not fit are refused together: none of them could run. */
-    struct err room;
-    err_clear(&room);
-    const bool fits = check_room(x, job, &room);
     struct job_set *set = TAKE(a, 1, struct job_set);
     /* Only this differs between combinations. */
     bool *idle = TAKE(a, all->n, bool);
@@ -249,7 +246,7 @@ static int add_combination(struct expansion *x, const struct combination *c,
         r->jobs = set;
         /* Messages name the job's own ranks. */
         x->job = &c->jobs->job[i].set;
-        x->room = fits ? NULL : &room;
+        x->room = room;
         const int made = expand_finish(x, r);
         x->job = NULL;
         x->room = NULL;
@@ -269,9 +266,14 @@ int expand_jobs(struct expansion *x, struct run_spec *run)
     const struct job_set set = make_set(x, job, digest);
     struct combination c = combination_start(jobs);
     int n = 0;
+    /* Jobs that do not fit are refused together: none of them could run. Asked once, as those that
+     * are idle keep their places. */
+    struct err room;
+    err_clear(&room);
+    const bool fits = check_room(x, job, &room);
     /* One behind the other: alone, pairs, all. */
     while (combination_next(&c)) {
-        const int made = add_combination(x, &c, job, &set, digest, &run[n]);
+        const int made = add_combination(x, &c, job, &set, digest, fits ? NULL : &room, &run[n]);
         if (made < 0) return -1;
         n += made;
     }

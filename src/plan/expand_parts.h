@@ -37,6 +37,7 @@ struct expansion {
     struct identity *identity;    /* owned */
     struct machine_changes changes; /* of the machines seen so far */
     struct calls calls;             /* what runs are called */
+    size_t text_bytes;              /* settings of all runs so far, as texts */
 };
 
 /* expand_spec: the settings of the present point, with those of x->job, in *run: not yet named or

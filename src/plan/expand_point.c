@@ -14,7 +14,8 @@
 #include "plan/file_kind.h"
 #include "plan/program_file.h"
 
-enum { MAX_BODIES = 1 << 27 };
+/* A run's settings are 5 KB of text as a rule; those of all runs may have as much beyond that. */
+enum { MAX_BODIES = 1 << 27, USUAL_TEXT_BYTES = 8192, MOST_TEXT_BYTES = 1 << 26 };
 
 /* The settings of the present point in the order in which they act; `list` needs naxis + 3
  * entries. */
@@ -273,6 +274,19 @@ bool expand_spec(struct expansion *x, struct run_spec *run)
     return resolve_program(x, run);
 }
 
+/* A list of many numbers is a part of what each run is, and so are the settings of all jobs beside
+ * it: they are kept, and made into a digest, once for every run. */
+static bool check_texts(struct expansion *x, const struct run_spec *run)
+{
+    const size_t own = strlen(run->config_text);
+    if (own > USUAL_TEXT_BYTES) x->text_bytes += own - USUAL_TEXT_BYTES;
+    return x->text_bytes <= MOST_TEXT_BYTES ||
+           err_set(x->err, ERR_CONFIG,
+                   "%s: the lists of all runs, and the jobs beside each, take more than %d MiB of "
+                   "text: make the sweep or the lists smaller, or split it into several scenarios",
+                   x->scenario->path, MOST_TEXT_BYTES >> 20);
+}
+
 int expand_finish(struct expansion *x, struct run_spec *run)
 {
     const int keep = wanted(x, run);
@@ -281,6 +295,7 @@ int expand_finish(struct expansion *x, struct run_spec *run)
     name_run(x, run, &x->present->file);
     if (!expand_path(x, run)) return -1;
     identity_set(x->identity, run, x->plan->arena);
+    if (!check_texts(x, run)) return -1;
     note_refusal(x, run);
     return 1;
 }

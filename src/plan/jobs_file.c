@@ -15,6 +15,9 @@
 #include "plan/program_file.h"
 #include "spec/spec_fields.h"
 
+/* In all files of places together: each is 10 bytes of a list, and a number of each run. */
+enum { MOST_PLACES = 1 << 20 };
+
 static const char kind_key[] = "machine.placement.kind", list_key[] = "machine.placement.list";
 
 /* A job being read. */
@@ -69,8 +72,14 @@ static const char *read_places(const struct reading *r, const struct node *n, co
             ok = isdigit((unsigned char)*s);
             to = strtol(s, &end, 10);
         }
-        /* A few characters must not ask for any amount of memory. */
-        ok = ok && to >= from && to < 1 << 30 && to - from < 1 << 24 && list.length < 1 << 28;
+        ok = ok && to >= from && to < 1 << 30;
+        /* A few characters must not ask for any amount of memory, in one file or in many. */
+        if (ok && (r->scenario->jobs->nplace += to - from + 1) > MOST_PLACES) {
+            err_set_at(r->err, ERR_DATA, path, line,
+                       "'%.*s': the files of all jobs name more than %d processors",
+                       (int)strcspn(first, " ,\t\n"), first, MOST_PLACES);
+            goto out;
+        }
         if (!ok) {
             err_set_at(r->err, ERR_DATA, path, line,
                        "'%.*s': expected numbers of processors, such as 0 1 2 or 4-7",

@@ -19,6 +19,7 @@ struct scenario_jobs {
     int n, line;
     struct scenario_job job[JOB_MOST]; /* (n) */
     unsigned combine;                  /* COMBINE_*; 0: nobody has said: all together */
+    int64_t nplace;                    /* processors that files of places have named so far */
 };
 
 /* jobs_file_read: the list `jobs` into s->jobs. jobs_file_combine: the words of `combinations`,

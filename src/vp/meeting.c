@@ -73,7 +73,9 @@ sim_ps meeting_time(const struct network_spec *n, int links, int64_t bytes)
     const double rate = c->bandwidth > 0 ? c->bandwidth : n->link_bandwidth;
     /* An unlimited link takes no time for any number of bytes. */
     const sim_ps vector = rate > 0 ? ps_rounded((double)bytes * (SIM_PS_PER_S / rate)) : 0;
-    return sim_from_seconds(c->latency) + links * sim_from_seconds(c->hop_latency) + vector;
+    /* A tree over millions of slow links may be longer than simulated time. */
+    const sim_ps tree = ps_times(links, sim_from_seconds(c->hop_latency));
+    return ps_later(ps_later(sim_from_seconds(c->latency), tree), vector);
 }
 
 void meeting_create(struct world *w)
@@ -123,7 +125,7 @@ static void complete(struct vp *v)
     /* On the fiber of the last rank, whose call is still in progress, as those of all others
      * are. */
     g->first.act(g->data, w->nrank, g->first.context);
-    g->release = g->latest + time;
+    g->release = ps_later(g->latest, time);
     g->inside = 0;
     if (w->path) {
         const uint32_t last = path_at(w->path, g->path, g->latest);

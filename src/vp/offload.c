@@ -88,10 +88,12 @@ void offload_send(struct vp *v, struct message *m)
     const sim_ps copy = byte_cost(0, message_cost(&w->software, m->bytes)->send_byte, m->bytes);
     /* The engine goes on from the copy before, or begins now. */
     const bool busy = v->engine_free > v->clock;
-    const sim_ps begin = busy ? v->engine_free : v->clock;
+    /* The rank's clock does not stand by when many long copies follow each other: no sum of them
+     * may wrap. */
+    const sim_ps end = ps_later(busy ? v->engine_free : v->clock, copy);
     v->engine_path =
-        log_copy(v, busy ? v->engine_path : v->path, begin + copy, PATH_ENGINE_SEND, m->bytes);
-    v->engine_free = begin + copy;
+        log_copy(v, busy ? v->engine_path : v->path, end, PATH_ENGINE_SEND, m->bytes);
+    v->engine_free = end;
     m->net.ready = m->copied = v->engine_free;
     m->net.path = m->copied_path = v->engine_path;
 }
@@ -102,7 +104,7 @@ void offload_receive(struct message *m)
     const struct world *w = v->world;
     if (w->machine->software.offload != OFFLOAD_COPIES) return;
     const sim_ps copy = byte_cost(0, message_cost(&w->software, m->bytes)->recv_byte, m->bytes);
-    m->net.arrival += copy;
-    m->net.uncontended += copy;
+    m->net.arrival = ps_later(m->net.arrival, copy);
+    m->net.uncontended = ps_later(m->net.uncontended, copy);
     m->net.path = log_copy(v, m->net.path, m->net.arrival, PATH_ENGINE_RECV, m->bytes);
 }

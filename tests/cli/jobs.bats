@@ -195,6 +195,14 @@ refused() {
     scenario "$(two_on '{file: wrong.txt}' random)"
     fails_with 65 mimdsim check s.yaml
     stderr_says "wrong.txt:2: '7-5': expected numbers of processors, such as 0 1 2 or 4-7"
+    # 9 bytes of a file for 10 MB of a list are the most, also in two files
+    echo 0-599999 >many.txt
+    scenario "$(two_on '{file: many.txt}' '{file: many.txt}')"
+    fails_with 65 mimdsim check s.yaml
+    stderr_says "many.txt:1: '0-599999': the files of all jobs name more than 1048576 processors"
+    echo 0-99999999999999999999 >many.txt
+    fails_with 65 mimdsim check s.yaml
+    stderr_says "many.txt:1: '0-99999999999999999999': expected numbers of processors"
     scenario "$(two_on gray random)"
     fails_with 78 mimdsim run s.yaml -o none.db
     stderr_says 'placement gray needs a hypercube'

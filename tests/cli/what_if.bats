@@ -148,6 +148,17 @@ texts_are() {
     stderr_says "no run has 'plan' for variant; did you mean 'plain'?"
 }
 
+@test "an answer out of more values than can be compared is refused before the first run" {
+    printf '%s\n' 'schema_version: 1' 'machine: ideal' 'machine.topology.dims: [8192]' 'kernel: barrier' "ranks: [$(seq -s, 2 4098)]" \
+        'answer: {of: ranks, over: ranks, least: makespan}' >ask.yaml
+    fails_with 78 mimdsim run ask.yaml -o ask.db --quiet
+    stderr_says "ask.yaml:6: answer: 1025 values of 'ranks' for each of 1025 of 'ranks', or more, are too many to compare"
+    [ ! -e ask.db ]
+    sed -i 's/over: ranks, //' ask.yaml
+    fails_with 78 mimdsim run ask.yaml -o ask.db --quiet
+    stderr_says "answer: 4097 values of 'ranks', or more, are too many to compare"
+}
+
 @test "the questions of docs/what-if.md have the answers that stand there" {
     if ! command -v gnuplot >/dev/null; then skip; fi
     tr '\n' ' ' <"$MIMDSIM_SRCDIR/docs/what-if.md" | tr -s ' ' >words

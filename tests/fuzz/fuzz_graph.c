@@ -29,6 +29,22 @@ static void take_links(struct topology_spec *t, struct fuzz_bytes *b, struct are
     for (int i = 0; i < t->nlink_percent; i++) t->link_percent[i] = 1 + (int)fuzz_below(b, 200);
 }
 
+/* Now and then some of it does not work. */
+static void take_failures(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
+{
+    enum { MOST_FAILED = 12 };
+    if (fuzz_below(b, 4) != 0) return;
+    t->failed_link = (int(*)[2])arena_take(a, (MOST_FAILED + 1) * sizeof *t->failed_link);
+    t->failed_router = TAKE(a, MOST_FAILED + 1, int);
+    t->nfailed_link = (int)fuzz_below(b, MOST_FAILED);
+    t->nfailed_router = (int)fuzz_below(b, MOST_FAILED) / 3;
+    for (int i = 0; i < t->nfailed_link; i++) {
+        t->failed_link[i][0] = (int)(int8_t)fuzz_take(b, 1);
+        t->failed_link[i][1] = (int)(int8_t)fuzz_take(b, 1);
+    }
+    for (int i = 0; i < t->nfailed_router; i++) t->failed_router[i] = (int)(int8_t)fuzz_take(b, 1);
+}
+
 static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
 {
     *t = (struct topology_spec){.family = (enum topology_family)fuzz_below(b, FAMILIES)};
@@ -41,6 +57,7 @@ static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct 
     t->routing = (enum dragonfly_routing)fuzz_below(b, 2);
     t->xpress = fuzz_below(b, 4) == 0;
     if (topology_has(t->family, TOPOLOGY_LISTED)) take_links(t, b, a);
+    take_failures(t, b, a);
 }
 
 /* Routes are walks: each link begins where the one before ended. */
@@ -51,12 +68,17 @@ static void walk(const struct topology *t, struct fuzz_bytes *b)
         int src = (int)(fuzz_take(b, 3) % (unsigned)t->nnode),
             dst = (int)(fuzz_take(b, 3) % (unsigned)t->nnode);
         uint64_t choice = fuzz_take(b, 2);
+        /* Nobody is placed on what does not work. */
+        if (!topology_router_works(t, topology_router_of(t, src)) ||
+            !topology_router_works(t, topology_router_of(t, dst)))
+            continue;
         int n = topology_route(t, src, dst, choice, route), at = topology_router_of(t, src);
         CHECK(n >= 0 && n <= t->max_hops);
         if (t->fixed_routes) CHECK(topology_distance(t, src, dst) == n);
         for (int i = 0; i < n; i++) {
             int from, to, port;
             CHECK(route[i].link >= 0 && route[i].link < t->nlink);
+            CHECK(topology_link_works(t, route[i].link));
             CHECK(route[i].vc_class >= 0 && route[i].vc_class < t->nclass);
             topology_link_ends(t, route[i].link, &from, &to, &port);
             CHECK(from == at && port == route[i].port && port < t->nport);

@@ -13,6 +13,7 @@
 #include "base/arena.h"
 #include "base/random.h"
 #include "machine/placement.h"
+#include "machine/topology_failed.h"
 #include "machine/topology_measure.h"
 
 enum { CHOICES = 3, MAX_ROUTE = 128 };
@@ -245,6 +246,39 @@ static void a_switch_without_nodes_may_be_lost(void **state)
     arena_destroy(a);
 }
 
+/* The memory for ways around is bounded: what is found again after it was given away is the same
+ * way. Here for 5 of 256 targets, each of which has 256 x 4 numbers. */
+static void ways_are_found_again(void **state)
+{
+    (void)state;
+    static int pair[2][2] = {{0, 1}, {16, 17}};
+    struct arena *a = arena_create();
+    struct topology_spec s = topology_spec_of(TOPOLOGY_TORUS, 2, (int[]){16, 16}), all = s;
+    struct topology *few = topology_made(&s, a);
+    struct err e;
+    err_clear(&e);
+    s.nfailed_link = all.nfailed_link = 2;
+    s.failed_link = all.failed_link = pair;
+    assert_true(topology_fail(few, 5 * 4096, a, &e));
+    const struct topology *t = topology_made(&all, a);
+    for (int i = 0; i < 256; i++) topology_distance(t, 0, i);
+    const size_t before = arena_peak(a);
+    for (int k = 0; k < 3 * 256; k++)
+        assert_int_equal(topology_distance(few, 16 * (k & 1), k % 256),
+                         topology_distance(t, 16 * (k & 1), k % 256));
+    assert_true(arena_peak(a) - before < 256 * 1024);
+    arena_destroy(a);
+}
+
+static void too_many_routers_are_refused(void **state)
+{
+    (void)state;
+    static int pair[1][2] = {{0, 1}};
+    struct topology_spec s = topology_spec_of(TOPOLOGY_TORUS, 2, (int[]){2048, 1024});
+    s = with_link(s, pair);
+    topology_refused(&s, "2097152 routers and");
+}
+
 /* ---- placement */
 
 /* Ranks take the processors that work, in order; the others cannot be named. */
@@ -293,6 +327,8 @@ int main(void)
         cmocka_unit_test(cables_of_a_bundle_fail_one_by_one),
         cmocka_unit_test(what_is_not_there_cannot_fail),
         cmocka_unit_test(a_switch_without_nodes_may_be_lost),
+        cmocka_unit_test(ways_are_found_again),
+        cmocka_unit_test(too_many_routers_are_refused),
         cmocka_unit_test(ranks_are_placed_on_what_works),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -81,6 +81,11 @@ static void times_by_hand(void **state)
     assert_int_equal(meeting_time(&m.network, 6, 800), US + 300000 + 400000);
     m.network.link_bandwidth = 0; /* unlimited */
     assert_int_equal(meeting_time(&m.network, 6, 800), US + 300000);
+    /* a diameter of 2^24 links of a second each, and vectors that never end: no sum wraps */
+    m.network.collective.hop_latency = 1;
+    assert_int_equal(meeting_time(&m.network, 1 << 24, 800), PS_TOO_LONG);
+    m.network.link_bandwidth = 1e-6;
+    assert_int_equal(meeting_time(&m.network, 1 << 24, INT64_MAX), PS_TOO_LONG);
 }
 
 /* ---- values and clocks ---- */

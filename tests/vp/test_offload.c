@@ -324,6 +324,45 @@ static void engines_never_make_such_a_program_slower(void **state)
     assert_true(slower > 200 && faster > 200);
 }
 
+/* --- the end of time --------------------------------------------------------------------------- */
+
+/* Five copies, none of which stands on the rank's own clock, of 46 days each. */
+static void endless(struct comm *c, void *context)
+{
+    enum { MANY = 5, HUGE_BYTES = 4000000 };
+    static char data[HUGE_BYTES];
+    struct comm_request r[MANY] = {{0}};
+    (void)context;
+    for (int i = 0; i < MANY; i++)
+        if (comm_rank(c) == 0) comm_isend(c, 1, TAG, data, HUGE_BYTES, &r[i]);
+        else comm_irecv(c, 0, TAG, data, HUGE_BYTES, &r[i]);
+    comm_waitall(c, MANY, r);
+}
+
+static void copies_that_never_end_fail_the_run(void **state)
+{
+    (void)state;
+    for (int receiver = 0; receiver < 2; receiver++) {
+        struct arena *a = arena_create();
+        struct run_result r = {0};
+        struct err e;
+        err_clear(&e);
+        struct machine_spec m = pair(OFFLOAD_COPIES, -1);
+        if (receiver) m.software.recv_copy = 1;
+        else m.software.send_copy = 1;
+        const struct record_spec nothing = {0};
+        const struct world_load load = {.nrank = 2,
+                                        .program = endless,
+                                        .nstage = 1,
+                                        .stage_name = stage_name,
+                                        .largest_message = -1};
+        assert_true(world_run(&m, &load, &nothing, 1, a, &r, &e));
+        assert_int_equal(r.status, RUN_FAILED);
+        assert_non_null(strstr(r.text, "simulated time"));
+        arena_destroy(a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,6 +374,7 @@ int main(void)
         cmocka_unit_test(long_computing_is_not_forgotten),
         cmocka_unit_test(a_kernel_makes_its_copies_itself),
         cmocka_unit_test(engines_never_make_such_a_program_slower),
+        cmocka_unit_test(copies_that_never_end_fail_the_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
