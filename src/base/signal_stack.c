@@ -1,4 +1,7 @@
-/* signal_stack.c - see signal_stack.h. */
+/* signal_stack.c - see signal_stack.h.
+ *
+ * The system knows one such stack for each thread, and gives it back when another one takes its
+ * place: so they form a chain, whose links are in the stacks themselves. */
 #include "base/signal_stack.h"
 
 #include <stddef.h>
@@ -11,6 +14,7 @@ void *signal_stack_make(enum signal_stack_kind kind)
     struct signal_stack *s =
         mmap(NULL, SIGNAL_STACK_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (s == MAP_FAILED) return NULL;
+    /* Data before the stack: a handler may come as soon as the system knows it. */
     s->magic = MAGIC;
     s->kind = kind;
     const stack_t own = {.ss_sp = s, .ss_size = SIGNAL_STACK_BYTES};

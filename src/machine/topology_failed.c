@@ -84,7 +84,7 @@ static int *make_room(struct failed *f, int target)
 {
     if (f->nkept < f->most_kept) {
         f->kept[f->nkept++] = target;
-        return TAKE(f->arena, f->whole->nrouter * PHASES, int);
+        return TAKE(f->arena, size_product(f->whole->nrouter, PHASES), int);
     }
     int *place = f->next[f->kept[f->oldest]];
     f->next[f->kept[f->oldest]] = NULL;

@@ -9,8 +9,8 @@ struct fiber_pool;
 struct stack_fault;
 
 /* Called in a signal handler, on a stack of its own: what POSIX allows there, and sentences with
- * snprintf, which asks for no memory for words and whole numbers. Ends the process, or returns: then
- * whoever handled faults before gets this one. */
+ * snprintf, which asks for no memory for words and whole numbers. Ends the process, or returns:
+ * then whoever handled faults before gets this one. */
 typedef void stack_fault_fn(void *context, int fiber);
 
 /* stack_fault_begin: from now on, when this thread touches the guard page below the stack of fiber

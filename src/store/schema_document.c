@@ -122,7 +122,7 @@ static void describe(const struct document *d, const char *name, struct text *ou
         if ((!view && sscanf(line, "CREATE TABLE %63[a-z_]", table) != 1) ||
             !reads(d->statement, table))
             continue;
-        const char *about;
+        const char *about = NULL;
         if (view) find_statement(d->schema, table, &about);
         if (view ? view_comment(about, line, name, out) : table_comment(line, name, out)) return;
     }

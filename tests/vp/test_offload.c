@@ -324,7 +324,7 @@ static void engines_never_make_such_a_program_slower(void **state)
     assert_true(slower > 200 && faster > 200);
 }
 
-/* --- the end of time --------------------------------------------------------------------------- */
+/* --- the end of time -------------------------------------------------------------------------- */
 
 /* Five copies, none of which stands on the rank's own clock, of 46 days each. */
 static void endless(struct comm *c, void *context)
