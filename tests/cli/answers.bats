@@ -146,7 +146,7 @@ END
 @test "a long run tells how far it is, on a terminal alone, and ends as it does unseen" {
     command -v script >/dev/null || skip "no script(1) to give a terminal"
     local n=8192 line='; [0-9.]+ million events, [0-9.]+ million/s, [0-9]+ of [0-9]+ ranks ended'
-    if "$MIMDSIM" --version | grep -q fsanitize; then n=2048; fi # slow enough
+    if sanitized; then n=2048; fi # slow enough
     printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'model: {generator: serial-chain, n: '$n'}' \
         'kernel: dynamics' 'ranks: n' 'level: link' 'machine.topology.dims: [32, 32, 16]' >long.yaml
     script -qec "'$MIMDSIM' run long.yaml -j 2 -o seen.db --set kernel.solver=pcr,cr" seen.log >/dev/null

@@ -170,30 +170,31 @@ draw_all() {
     cp all.db bad.db
     draw_all 0
     pictures=$(find drawn -name '*.svg' | wc -l)
-    printf '"; system("touch PWNED1"); set label 98 "<script>' >text
-    add_to text "$shown"
-    draw_all 0
-    printf "'; system('touch PWNED2'); set label 98 '; ! touch PWNED2" >text
-    add_to text "$shown"
-    draw_all 0
-    printf '`touch PWNED3` $(touch PWNED3) ${PWD} @figure @PWNED |touch PWNED3 < touch PWNED3 > PWNED3' >text
-    add_to text "$shown"
-    draw_all 0
-    printf '\n system("touch PWNED4")\n! touch PWNED4\r\n"; system("touch PWNED4")\n\t\001\033[2J' >text
-    add_to text "$shown"
-    draw_all 0
-    printf '{/Symbol %%s%%n%%d%%*d%%%%\\\\101\\" {}}{{@_^~&{\\\\\n# %% "" \x27\x27 \\' >text
-    add_to text "$shown"
-    draw_all 0
-    [ "$(find drawn -name '*.svg' | wc -l)" -eq "$pictures" ]
+    # gnuplot itself has no sanitizers: for them the texts with control characters and formats are enough
+    texts='1 2 3 4 5'
+    if sanitized; then texts='4 5'; fi
+    for k in $texts; do
+        case $k in
+        1) printf '"; system("touch PWNED1"); set label 98 "<script>' ;;
+        2) printf "'; system('touch PWNED2'); set label 98 '; ! touch PWNED2" ;;
+        3) printf '`touch PWNED3` $(touch PWNED3) ${PWD} @figure @PWNED |touch PWNED3 < touch PWNED3 > PWNED3' ;;
+        4) printf '\n system("touch PWNED4")\n! touch PWNED4\r\n"; system("touch PWNED4")\n\t\001\033[2J' ;;
+        5) printf '{/Symbol %%s%%n%%d%%*d%%%%\\\\101\\" {}}{{@_^~&{\\\\\n# %% "" \x27\x27 \\' ;;
+        esac >text
+        add_to text "$shown"
+        draw_all 0
+        [ "$(find drawn -name '*.svg' | wc -l)" -eq "$pictures" ]
+    done
 }
 
 @test "a text that chooses rows is no command of gnuplot either" {
     if ! command -v gnuplot >/dev/null; then skip; fi
     every_figure
     printf '"; system("touch PWNED1"); `touch PWNED2` $(touch PWNED3) \x27; system("touch PWNED4") #\x27 @x {/x} %%s%%n\\ |touch PWNED5 <x>\nsystem("touch PWNED6")' >text
-    for column in run.kernel run.topology run.level run.formulation run.solver baseline.name setting.value \
-        check_point.quantity claim.variant build.version; do
+    columns='run.kernel run.topology run.level run.formulation run.solver baseline.name setting.value check_point.quantity
+             claim.variant build.version'
+    if sanitized; then columns='run.kernel setting.value'; fi
+    for column in $columns; do
         add_to text "$column"
         draw_all 0 65 66
     done

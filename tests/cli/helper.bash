@@ -25,6 +25,9 @@ setup() {
 
 mimdsim() { "$MIMDSIM" "$@"; }
 
+# sanitized: the program was built with sanitizers: it is slow, and its memory is not its own.
+sanitized() { mimdsim --version | grep -q 'with sanitizers'; }
+
 # show: what the last command said, for the log of a failed test.
 show() { printf '%s\n' "status: $status" "stdout: $output" "stderr: $stderr"; }
 

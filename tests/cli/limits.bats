@@ -3,8 +3,6 @@
 
 load helper
 
-sanitized() { mimdsim --version | grep -q sanitizers; } # they have memory of their own
-
 # A scenario on a machine of 2^24 processors and 10^8 links and ports.
 huge() {
     printf '%s\n' 'schema_version: 1' 'question: q' 'machine: {name: paragon, topology.dims: [4096, 4096]}' 'kernel: dynamics' \

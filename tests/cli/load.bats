@@ -43,17 +43,17 @@ END
 
 @test "stored points are not measured again, and --force measures all" {
     small "4, 4"
-    works mimdsim load small.yaml --rates 0.1,0.2 -q
+    works mimdsim load small.yaml --messages 10000 --rates 0.1,0.2 -q
     first=$output
     sqlite3 mimdsim.db "UPDATE load_point SET host_s = 77; UPDATE load_point SET max_ps = 1234567 WHERE offered = 0.2 AND NOT probe"
-    works mimdsim load small.yaml --rates 0.1,0.2,0.3 -q
+    works mimdsim load small.yaml --messages 10000 --rates 0.1,0.2,0.3 -q
     stdout_says "1234.6"
     sql_is mimdsim.db "SELECT count(*) FROM load_point WHERE host_s <> 77" 1
-    works mimdsim load small.yaml --rates 0.1,0.2 -q --force
+    works mimdsim load small.yaml --messages 10000 --rates 0.1,0.2 -q --force
     stdout_is "$first"
     sql_is mimdsim.db "SELECT count(*) FROM load_point WHERE host_s = 77" 0
     # the saturation stays where it is not looked for again
-    works mimdsim load small.yaml --rates 0.1 -q --no-saturation
+    works mimdsim load small.yaml --messages 10000 --rates 0.1 -q --no-saturation
     sql_is mimdsim.db "SELECT count(*) FROM load_series WHERE saturation IS NOT NULL" 1
 }
 
@@ -75,9 +75,9 @@ END
 
 @test "several threads give the rows of one" {
     small "4, 4"
-    works mimdsim load small.yaml --rates 0.1:0.5:0.1 --traffic uniform,bitcomp -q -o one.db --jobs 1
+    works mimdsim load small.yaml --rates 0.1:0.5:0.2 --messages 10000 --traffic uniform,bitcomp -q -o one.db --jobs 1
     one=$output
-    works mimdsim load small.yaml --rates 0.1:0.5:0.1 --traffic uniform,bitcomp -q -o four.db --jobs 4
+    works mimdsim load small.yaml --rates 0.1:0.5:0.2 --messages 10000 --traffic uniform,bitcomp -q -o four.db --jobs 4
     stdout_is "$one"
     columns="series, offered, probe, status, created, accepted, mean_ps, half_ps, p99_ps, max_ps, messages, events"
     [ "$(sql one.db "SELECT $columns FROM load_point ORDER BY 1, 2, 3")" = "$(sql four.db "SELECT $columns FROM load_point ORDER BY 1, 2, 3")" ]

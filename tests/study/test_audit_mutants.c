@@ -1,5 +1,7 @@
 /* test_audit_mutants.c - the audit of databases checked: changed rows are found, and the share of
  * them is printed. */
+#include "config.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +18,12 @@
 #include "run/run.h"
 #include "study/audit.h"
 
-enum { PICKS = 3, MOST_COLUMNS = 80 };
+#ifdef SANITIZERS /* slow, and the rules are the same */
+enum { PICKS = 1 };
+#else
+enum { PICKS = 3 };
+#endif
+enum { MOST_COLUMNS = 80 };
 
 /* --- a small database ------------------------------------------------------------------------- */
 
@@ -350,7 +357,7 @@ static void all_mutants_that_matter_are_found(void **state)
     }
     for (int kind = 0; kind < KINDS; kind++) print(kind_name[kind], &of_kind[kind]);
     print("all", &all);
-    assert_true(all.made > 750);
+    assert_true(all.made > 250 * PICKS);
     assert_int_equal(all.by_all, all.made);
 }
 
