@@ -43,6 +43,14 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     fails_with 1 mimdsim lab check ring
     stdout_says '7 of 8 right'
     grep -q '^bytes .* wrong: .* % too small$' <<<"$output"
+    # beside the prediction stands what the program did, in JSON as well; of a program that did not run nothing does
+    did=$(sed -n 's/^  bytes: //p' solved)
+    grep -qE "^bytes +[^ ]+ +7 +$did +wrong: " <<<"$output"
+    run mimdsim lab check ring --json
+    [ "$(sqlite3 :memory: "SELECT a.value ->> 'predicted', a.value ->> 'simulated' FROM json_each('${output//\'/\'\'}', '\$[0].answers') a
+        WHERE a.value ->> 'question' = 'bytes'")" = "7|$did" ]
+    output=$(mimdsim lab check broadcast --json 2>/dev/null) || true
+    [ "$(sqlite3 :memory: "SELECT count(*) > 2, count(a.value ->> 'simulated') FROM json_each('${output//\'/\'\'}', '\$[0].answers') a")" = '1|0' ]
     # a mistaken unit is told as such
     answer ring bytes "$(sed -n 's/^  bytes: //p' solved)000"
     fails_with 1 mimdsim lab check ring
