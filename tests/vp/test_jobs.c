@@ -7,6 +7,7 @@
 
 #include "base/picoseconds.h"
 #include "base/random.h"
+#include "comm/collectives.h"
 #include "vp/jobs.h"
 
 static const char *const stage_name[] = {"first", "second"};
@@ -382,6 +383,118 @@ static void repeated_runs_are_the_same_bits(void **state)
     assert_true(digest[0][0] != digest[0][1]);
 }
 
+/* What a job does with collectives of the network: each rank comes when it says, and leaves. */
+struct adding {
+    int nrank, rounds;
+    int64_t delay_ps[5], left_ps[5][3];
+    double sum[5][3][10];
+};
+
+static void add_up(void *into, const void *with, bool before, int64_t n, void *context,
+                   struct work *w)
+{
+    (void)before, (void)context, (void)w;
+    for (int64_t i = 0; i < n; i++) ((double *)into)[i] += ((const double *)with)[i];
+}
+
+static void add_by_network(struct comm *c, void *context)
+{
+    struct adding *x = context;
+    const int rank = comm_rank(c);
+    const struct collective_op op = {.combine = add_up, .operation = COMM_REAL,
+                                     .commutative = true};
+    for (int round = 0; round < x->rounds; round++) {
+        double send[10], recv[10], scratch[20];
+        for (int i = 0; i < 10; i++) send[i] = 100 * x->nrank + 10 * rank + i + round;
+        const struct collective_call k = {.kind = COLLECTIVE_ALLREDUCE, .comm = c, .tag = round,
+                                          .count = 10, .element = 8, .send = send, .recv = recv,
+                                          .op = &op, .scratch = scratch};
+        comm_elapse(c, x->delay_ps[rank]);
+        collective_run(collective_algorithm_find(COLLECTIVE_ALLREDUCE, "hardware"), &k);
+        x->left_ps[rank][round] = comm_now_ps(c);
+        memcpy(x->sum[rank][round], recv, sizeof recv);
+    }
+}
+
+/* Each job's collectives are its own, whoever else is in one at the same time: they wait for its
+ * ranks alone, take the way of its own places, and have its own sums. On a line of twelve routers:
+ * 1 us + up and down from the first rank to the farthest, 50 ns a link, + 80 B at 1 B/ns. */
+static void each_job_has_its_own_collectives_of_the_network(void **state)
+{
+    (void)state;
+    int place[3][5] = {{0, 3, 6, 9}, {2, 1}, {11, 4, 5, 7, 10}};
+    static const int nrank[3] = {4, 2, 5}, farthest[3] = {9, 1, 7}, rounds[3] = {3, 2, 3};
+    for (int k = 0; k < LEVELS_TRIED; k++) {
+        struct machine_spec m = line(12, 1, levels[k]);
+        static struct adding x[3];
+        struct set s = {0};
+        strcpy(m.network.collective.kinds, "allreduce");
+        m.network.collective.operations = OPERATIONS_REAL;
+        m.network.collective.latency = 1e-6;
+        m.network.collective.hop_latency = 50e-9;
+        m.network.collective.bandwidth = 1e9;
+        memset(x, 0, sizeof x);
+        for (int i = 0; i < 3; i++) {
+            add(&s, nrank[i], add_by_network, place[i]);
+            x[i].nrank = nrank[i], x[i].rounds = rounds[i];
+            for (int r = 0; r < nrank[i]; r++) x[i].delay_ps[r] = 1000 * NS * ((r + i) % 3);
+            s.load[i].context = &x[i];
+            s.load[i].meets = true;
+            s.job[i].start_ps = 300 * NS * i;
+        }
+        go(&s, &m);
+        for (int i = 0; i < 3; i++) {
+            int64_t latest = 0;
+            for (int r = 0; r < nrank[i]; r++)
+                if (x[i].delay_ps[r] > latest) latest = x[i].delay_ps[r];
+            const int64_t each = latest + (1000 + 2 * 50 * farthest[i] + 80) * NS;
+            for (int r = 0; r < nrank[i]; r++)
+                for (int round = 0; round < rounds[i]; round++) {
+                    assert_int_equal(x[i].left_ps[r][round], (round + 1) * each);
+                    for (int j = 0; j < 10; j++)
+                        assert_true(x[i].sum[r][round][j] ==
+                                    nrank[i] * (100 * nrank[i] + j + round) +
+                                        5 * nrank[i] * (nrank[i] - 1));
+                }
+            assert_int_equal(s.out[i].status, RUN_OK);
+            assert_int_equal(s.out[i].makespan_ps, rounds[i] * each);
+            assert_int_equal(s.out[i].messages, 0);
+        }
+        arena_destroy(s.arena);
+    }
+}
+
+/* A job whose ranks do not all come waits for ever, and is named; the ranks of others are not
+ * counted in. */
+static void leave_one_out(struct comm *c, void *context)
+{
+    struct adding *x = context;
+    if (comm_rank(c) != 1) add_by_network(c, x);
+}
+
+static void ranks_of_other_jobs_do_not_count(void **state)
+{
+    (void)state;
+    struct machine_spec m = line(8, 1, LEVEL_LINK);
+    static struct adding x[2];
+    struct set s = {0};
+    strcpy(m.network.collective.kinds, "allreduce");
+    m.network.collective.operations = OPERATIONS_REAL;
+    memset(x, 0, sizeof x);
+    for (int i = 0; i < 2; i++) {
+        add(&s, 4, i == 0 ? leave_one_out : add_by_network, NULL);
+        x[i].nrank = 4, x[i].rounds = 1;
+        s.load[i].context = &x[i];
+        s.load[i].meets = true;
+    }
+    go(&s, &m);
+    assert_int_equal(s.out[0].status, RUN_DEADLOCK);
+    assert_non_null(strstr(s.out[0].text, "3 of 4 ranks"));
+    assert_int_equal(s.out[1].status, RUN_FAILED);
+    assert_non_null(strstr(s.out[1].text, "a"));
+    arena_destroy(s.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -396,6 +509,8 @@ int main(void)
         cmocka_unit_test(a_message_left_behind_fails_its_job),
         cmocka_unit_test(the_kernel_server_is_one_for_all_jobs),
         cmocka_unit_test(repeated_runs_are_the_same_bits),
+        cmocka_unit_test(each_job_has_its_own_collectives_of_the_network),
+        cmocka_unit_test(ranks_of_other_jobs_do_not_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
