@@ -232,12 +232,13 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
     return store_insert(s, table, n, all, cell, e);
 }
 
-/* IS, not =: NULL equals NULL here. */
+/* IS, not =: NULL equals NULL here. The column with its table: a name in quotes that is no column
+ * would be a text to SQLite. */
 bool store_delete(struct store *s, const char *table, const char *column, struct store_value value,
                   struct err *e)
 {
     struct text sql = {0};
-    text_add(&sql, "DELETE FROM \"%s\" WHERE \"%s\" IS ?", table, column);
+    text_add(&sql, "DELETE FROM \"%s\" WHERE \"%s\".\"%s\" IS ?", table, table, column);
     bool ok = run_once(s, sql.s, 1, &value, e);
     text_free(&sql);
     return ok;
