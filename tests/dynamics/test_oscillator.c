@@ -148,6 +148,82 @@ static void a_trajectory_that_fails_moves_nothing(void **state)
     }
 }
 
+/* Quaternions have length one after each step of each rule, whatever the joint has besides. */
+static void steps_keep_quaternions_of_length_one(void **state)
+{
+    (void)state;
+    static const enum model_joint joint[] = {JOINT_SPHERICAL, JOINT_SLOT, JOINT_POINT_PLANE,
+                                             JOINT_FLOATING};
+    for (int j = 0; j < 4; j++)
+        for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++) {
+            struct model_spec spec = spec_random(MODEL_RANDOM_TREE, 4, joint[j], 7);
+            spec.rate = 5; /* 0.5 rad a step, where the rule alone would leave the sphere */
+            struct scene s = scene_of(&spec);
+            for (int step = 0; step < 3; step++) {
+                double before[200], moved = 0;
+                memcpy(before, s.state->q, (size_t)s.model->nq * sizeof(double));
+                assert_true(
+                    exact()->advance(s.model, s.state, (enum step_rule)rule, 0.02, 1, s.a, NULL));
+                for (int i = 0; i < s.model->nbody; i++) {
+                    const int at = s.model->q_at[i] + joint_quaternion(joint[j]);
+                    double square = 0;
+                    for (int k = 0; k < 4; k++) {
+                        square += s.state->q[at + k] * s.state->q[at + k];
+                        moved += fabs(s.state->q[at + k] - before[at + k]);
+                    }
+                    assert_true(fabs(square - 1) < 1e-14);
+                }
+                assert_true(moved > 1e-3);
+            }
+            scene_end(&s);
+        }
+}
+
+/* Which of the three questions a difference of two bodies is an answer to. */
+static void bodies_are_alike_in_what_they_are_asked_for(void **state)
+{
+    (void)state;
+    enum { AXES = 1, MASS = 2, HANGS = 4 };
+    static const struct {
+        size_t at;
+        int differs;
+    } row[] = {
+        {offsetof(struct body_def, axis[2]), AXES},
+        {offsetof(struct body_def, axis2[1]), AXES},
+        {offsetof(struct body_def, mass), MASS},
+        {offsetof(struct body_def, com[0]), MASS},
+        {offsetof(struct body_def, inertia[0]), MASS},
+        {offsetof(struct body_def, inertia[5]), MASS},
+        {offsetof(struct body_def, placement.quat[3]), HANGS},
+        {offsetof(struct body_def, placement.p[2]), HANGS},
+        {offsetof(struct body_def, pitch), HANGS},
+        {offsetof(struct body_def, stiffness), HANGS},
+        {offsetof(struct body_def, rest), HANGS},
+        {offsetof(struct body_def, damping), HANGS},
+    };
+    struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 3, JOINT_REVOLUTE, 1);
+    struct scene s = scene_of(&spec);
+    struct body_def *b = s.model->body;
+    const struct body_def like = b[1];
+    for (size_t i = 0; i <= sizeof row / sizeof *row; i++) {
+        const bool none = i == sizeof row / sizeof *row;
+        b[2] = like;
+        /* names, lines and parents are nobody's question */
+        strcpy(b[2].name, "other"), b[2].line = 77, b[2].parent = 0;
+        if (!none) *(double *)((char *)&b[2] + row[i].at) += 0.125;
+        const int differs = none ? 0 : row[i].differs;
+        assert_int_equal(bodies_alike(s.model, 1, 2), !(differs & AXES));
+        assert_int_equal(bodies_weigh_alike(s.model, 1, 2), !(differs & MASS));
+        assert_int_equal(bodies_hang_alike(s.model, 2, 1), !(differs & HANGS));
+    }
+    b[2] = like;
+    b[2].joint = JOINT_PRISMATIC;
+    assert_false(bodies_alike(s.model, 1, 2));
+    assert_true(bodies_alike(s.model, -1, -1));
+    assert_false(bodies_alike(s.model, -1, 1));
+    scene_end(&s);
+}
+
 /* ---- constraint forces ---- */
 
 static void sizes_are_relative_to_the_answer(void **state)
@@ -243,6 +319,8 @@ int main(void)
         cmocka_unit_test(one_step_is_the_textbooks_matrix),
         cmocka_unit_test(every_stepper_follows_the_cosine),
         cmocka_unit_test(a_trajectory_that_fails_moves_nothing),
+        cmocka_unit_test(steps_keep_quaternions_of_length_one),
+        cmocka_unit_test(bodies_are_alike_in_what_they_are_asked_for),
         cmocka_unit_test(sizes_are_relative_to_the_answer),
         cmocka_unit_test(without_inertia_articulated_bodies_take_over),
         cmocka_unit_test(nothing_to_accelerate_is_told),
