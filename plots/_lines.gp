@@ -17,18 +17,7 @@ stats data using (column("high")*vscale) nooutput
 if (band) { vmax = STATS_max > vmax ? STATS_max : vmax }
 stats data using (at_x(column("xi"), column("x"))) nooutput
 xmin = STATS_min; xmax = STATS_max
-# how many letters the longest number beside the vertical axis has: what it is called stands left of it, and where it had
-# no room gnuplot would leave it out
-letters = 1
-if (vlog > 0) {
-    do for [k=floor(log(vmin)/log(vlog)):ceil(log(vmax)/log(vlog))] {
-        k_letters = strlen(sprintf("%.6g", (1.0*vlog)**k)); letters = k_letters > letters ? k_letters : letters
-    }
-} else {
-    size = abs(vmax) > abs(vmin) ? abs(vmax) : abs(vmin); step = (vmin > 0 ? vmax : vmax - vmin)/10
-    letters = (size >= 1 ? floor(log10(size)) + 1 : 1) + (step > 0 && step < 1 ? 1 + ceil(-log10(step)) : 0) + (vmin < 0)
-}
-left_px = 72 + (letters > 4 ? 8*(letters - 4) : 0)
+left_px = axis_px(vlog > 0 ? letters_log(vlog, vmin, vmax) : letters_even(vmin, vmax))
 # no legend for a single curve without a name
 legend = curves > 1 || strlen(name[1]) > 0
 columns = panels == 1 ? 1 : (panels <= 4 ? 2 : 3)

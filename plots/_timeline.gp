@@ -46,7 +46,7 @@ do for [format in formats] {
         plot NaN, for [j=1:stages] keyentry with boxes linewidth 0.3 fillcolor rgb stage_colour[tone(j)] title stage_name[j]
     }
     unset key
-    set lmargin at screen 0.075; set rmargin at screen 0.985
+    set lmargin at screen axis_px(strlen(sprintf("%d", last)))/wide; set rmargin at screen 0.985
     set xrange [from:to]
     # the stage that most time is spent in
     if (stages > 0) {

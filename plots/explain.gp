@@ -48,13 +48,13 @@ do for [format in formats] {
         to (told(x_high) ? at_x(x_high) : columns - 0.5),(told(y_high) ? at_y(y_high) : rows - 0.5) \
         front fillstyle empty border linecolor rgb "#000000" linewidth 1.2 dashtype 2
     if (!told(x_low) && !told(y_low)) { unset object 1 }
-    set label 95 "dashed: published range     o unchanged     x solution     each cell shows the point in its middle" at screen 0.11,(26.0/high) left noenhanced font tiny textcolor rgb grey
-    # A wide white mark below each black one: black alone is lost on the dark cells.
+    set label 95 "dashed: published range;  o: unchanged;  x: solution;  each cell shows the point in its middle" at screen 0.11,(26.0/high) left noenhanced font tiny textcolor rgb grey
+    # A white disc below each black mark: black alone is lost on the dark cells.
     plot data using "i":"j":(0.5):(0.5):"margin" with boxxyerror linewidth 0 fillcolor palette, \
          data using (column("holds") == 1 ? column("i") : NaN):"j" with points pointtype 7 pointsize 0.5 linecolor rgb "#ffffff", \
-         "+" using (at_x(x_nominal)):(at_y(y_nominal)) every ::0::0 with points pointtype 6 pointsize 1.4 linewidth 6 linecolor rgb "#ffffff", \
+         "+" using (at_x(x_nominal)):(at_y(y_nominal)) every ::0::0 with points pointtype 7 pointsize 1.7 linecolor rgb "#ffffff", \
          "+" using (at_x(x_nominal)):(at_y(y_nominal)) every ::0::0 with points pointtype 6 pointsize 1.4 linewidth 2.4 linecolor rgb "#000000", \
-         "+" using (verdict eq "holds" ? at_x(x_answer) : NaN):(at_y(y_answer)) every ::0::0 with points pointtype 2 pointsize 1.4 linewidth 6 linecolor rgb "#ffffff", \
+         "+" using (verdict eq "holds" ? at_x(x_answer) : NaN):(at_y(y_answer)) every ::0::0 with points pointtype 7 pointsize 1.9 linecolor rgb "#ffffff", \
          "+" using (verdict eq "holds" ? at_x(x_answer) : NaN):(at_y(y_answer)) every ::0::0 with points pointtype 2 pointsize 1.4 linewidth 2.4 linecolor rgb "#000000"
     unset label 95; unset label 96; unset label 97; unset label 98; unset label 99; unset object 1
     unset multiplot

@@ -43,7 +43,7 @@ do for [format in formats] {
     set tmargin at screen 0.79
     do for [s=1:2] {
         size = int(word(sizes, s))
-        set lmargin at screen (s == 1 ? 0.09 : 0.56); set rmargin at screen (s == 1 ? 0.52 : 0.99)
+        set lmargin at screen (s == 1 ? axis_px(letters_even(0, top))/page_wide : 0.56); set rmargin at screen (s == 1 ? 0.52 : 0.99)
         total = NaN
         stats data using (column("P") == size ? (total = column("makespan_us")) : NaN) nooutput
         set title sprintf("n = P = %d: %.0f µs in all", size, total) offset 0,-0.6

@@ -53,12 +53,12 @@ do for [format in formats] {
         set xlabel "message [B]" offset 0,name_lift(format)
         set key at graph 0.03, graph 0.985 left top vertical maxrows 6 samplen 2.6 font tiny
         plot for [k=first(p):final(p)] data using "shown_bytes":(curve(k, column("us"))) with lines linewidth 1.8 \
-                linecolor rgb colour[place(k)], \
+                dashtype dash[place(k)] linecolor rgb colour[place(k)], \
              for [k=first(p):final(p)] data using "shown_bytes":(read_again(k, column("us"))) with points \
                 pointtype point[place(k)] pointsize 0.65 linecolor rgb colour[place(k)], \
              for [k=first(p):final(p)] data using "shown_bytes":(estimated(k, column("us"))) with points \
                 pointtype hollow[place(k)] pointsize 0.65 linewidth 1.5 linecolor rgb colour[place(k)], \
-             for [k=first(p):final(p)] keyentry with linespoints linewidth 1.8 pointtype point[place(k)] pointsize 0.7 \
+             for [k=first(p):final(p)] keyentry with linespoints linewidth 1.8 dashtype dash[place(k)] pointtype point[place(k)] pointsize 0.7 \
                 linecolor rgb colour[place(k)] title machine[k]
     }
     unset multiplot

@@ -30,7 +30,8 @@ short(s, n) = strlen(s) > n ? s[1:n-1]."…" : s
 # the names of the curves stand below their panel
 key_high = 18*most; panel_high = panels > 1 ? 230 : 330; row_high = panel_high + 78 + key_high
 wide = across > 1 ? 1000.0 : 800.0; high_px = 84.0 + row_high*down + 20
-width = (wide - 30 - 70*across)/across
+left_px = axis_px(steep ? (decades > 3 ? 4 : letters_log(10, scale*low/1.3, scale*high*1.3)) : letters_even(0, scale*high*1.08))
+width = (wide - 30 - left_px - (across > 1 ? 80 : 0))/across
 at_x(px) = px/wide; at_y(px) = 1.0 - px/high_px
 
 do for [format in formats] {
@@ -61,7 +62,7 @@ do for [format in formats] {
     }
     do for [p=1:panels] {
         c = (p - 1) % across; r = int((p - 1)/across)
-        left = 70 + c*(width + 80)
+        left = left_px + c*(width + 80)
         set lmargin at screen at_x(left); set rmargin at screen at_x(left + width)
         set tmargin at screen at_y(84 + r*row_high); set bmargin at screen at_y(84 + r*row_high + panel_high)
         set title (panels > 1 ? title_of[p] : "") noenhanced offset 0,-0.7

@@ -17,7 +17,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
     set label 98 subline at screen 0.5,0.918 center noenhanced textcolor rgb grey font tiny
     set label 99 foot(provenance, 1120) at screen 0.99,(0.016 + foot_lift(provenance, 1120)*1.0/560) right noenhanced font least(format) textcolor rgb grey
-    set lmargin at screen 0.065; set rmargin at screen 0.46; set tmargin at screen 0.87; set bmargin at screen 0.125
+    set lmargin at screen axis_px(letters_even(-0.03*most, most))/1120; set rmargin at screen 0.46; set tmargin at screen 0.87; set bmargin at screen 0.125
     set xrange [-0.5:ranks - 0.5]; set yrange [-0.03*most:1.06*most]
     set xtics auto offset 0,tick_lift(format); set ytics auto
     set xlabel "rank" offset 0,name_lift(format); set ylabel "slack [µs]"

@@ -17,7 +17,8 @@ ymax = (pmax > smax ? pmax : smax)*1.15
 panels = int((last + 5)/6); across = panels > 1 ? 2 : 1; down = int((panels + across - 1)/across)
 first(q) = 6*(q - 1) + 1
 final(q) = 6*q < last ? 6*q : last
-width = across == 1 ? 0.885 : 0.41
+left = axis_px(letters_log(2, ymin, ymax))/(across == 1 ? 800.0 : 1000.0)
+width = across == 1 ? 0.97 - left : (0.905 - left)/2
 
 do for [format in formats] {
     high = 92.0 + (panels > 1 ? 430 : 500)*down; each = (high - 92.0)/down
@@ -36,7 +37,7 @@ do for [format in formats] {
     set key top left
     do for [q=1:panels] {
         c = (q - 1) % across; r = int((q - 1)/across)
-        set lmargin at screen 0.085 + c*(width + 0.08); set rmargin at screen 0.085 + c*(width + 0.08) + width
+        set lmargin at screen left + c*(width + 0.08); set rmargin at screen left + c*(width + 0.08) + width
         set tmargin at screen 1.0 - (68.0 + each*r)/high; set bmargin at screen 1.0 - (68.0 + each*(r + 1) - 54)/high
         plot x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
              1 with lines linewidth 0.6 linecolor rgb grey notitle, \

@@ -58,9 +58,18 @@ band = "#d0d0d0"
 grey = "#666666"
 pale = "#b8b8b8"
 
-# A power of two as sizes are written: 512, 8Ki, 2Mi. (gnuplot's own %B says "ki".)
-ki(v) = v < 1024 ? sprintf("%g", v) : v < 2.0**20 ? sprintf("%gKi", v/1024) : \
-    v < 2.0**30 ? sprintf("%gMi", v/2.0**20) : v < 2.0**40 ? sprintf("%gGi", v/2.0**30) : sprintf("%gTi", v/2.0**40)
+# Where a vertical axis stands [pixels from the left] whose longest number has so many letters: the name of the axis stands
+# left of them, and gnuplot leaves out one that has no room. letters_log is for the powers of a base, letters_even for even steps.
+wider(a, b) = a > b ? a : b
+axis_px(letters) = letters < 4 ? 72.0 : 76 + 9.2*(letters - 4)
+power_letters(b, k, last) = k > last ? 1 : wider(strlen(sprintf("%.6g", (1.0*b)**k)), power_letters(b, k + 1, last))
+letters_log(b, low, high) = power_letters(b, int(floor(log(low)/log(b))), int(ceil(log(high)/log(b))))
+even_letters(size, step, below) = (size >= 1 ? int(floor(log10(size))) + 1 : 1) + (step > 0 && step < 1 ? 1 + int(ceil(-log10(step))) : 0) + below
+letters_even(low, high) = even_letters(wider(abs(low), abs(high)), (low > 0 ? high : high - low)/10.0, low < 0)
+
+# A power of two as sizes are written: 512, 8 Ki, 2 Mi. (gnuplot's own %B says "ki".)
+ki(v) = v < 1024 ? sprintf("%g", v) : v < 2.0**20 ? sprintf("%g Ki", v/1024) : \
+    v < 2.0**30 ? sprintf("%g Mi", v/2.0**20) : v < 2.0**40 ? sprintf("%g Gi", v/2.0**30) : sprintf("%g Ti", v/2.0**40)
 
 # One bar part of a stage: computing dark, waiting light, so that the order shows in grey too.
 compute_colour = "#0f4c9c"

@@ -33,7 +33,7 @@ do for [format in formats] {
     set label 98 subline at screen 0.5,(1.0 - 44/high) center noenhanced textcolor rgb grey
     set label 99 foot(provenance, page_wide) at screen 0.99,(9/high + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
     # times
-    set lmargin at screen 0.105; set rmargin at screen 0.97
+    set lmargin at screen wider(84.0, axis_px(steep ? letters_log(10, ymin/1.2, ymax*1.2) : letters_even(0, ymax*1.08)))/page_wide; set rmargin at screen 0.97
     set tmargin at screen 1.0 - (68.0 + 20*last)/high; set bmargin at screen (below + 78)/high
     if (wide) { set logscale x 2; set xrange [xmin*0.9:xmax*1.12] } else { set xrange [xmin - 0.6:xmax + 0.6]; set xtics 1 }
     if (steep) { set logscale y; set yrange [ymin/1.2:ymax*1.2] } else { set yrange [0:ymax*1.08] }

@@ -86,8 +86,19 @@ static void print_database(struct json *j, const char *file, const struct err *e
     columns_json(&audited_columns, &row, j);
 }
 
+/* Whether all segments of the message software were measured, as `mimdsim calibrate` writes. */
+static bool is_measured(const struct origin *origin, int n)
+{
+    bool measured = false;
+    for (int i = 0; i < n; i++)
+        measured = measured || (strcmp(origin[i].key, "software.segments") == 0 &&
+                                strcmp(origin[i].evidence, "measured") == 0);
+    return measured;
+}
+
 /* Steps of the message software that go down: a message that is faster than one a byte smaller.
- * They may be meant, as where a protocol is switched too late, so this is a warning. */
+ * They may be meant, as where a protocol is switched too late, so this is a warning. Of a measured
+ * machine it is a remark: nobody meant anything. */
 static void tell_steps_down(const char *file)
 {
     struct machine_spec m;
@@ -99,9 +110,12 @@ static void tell_steps_down(const char *file)
     err_clear(&e);
     text_add(&path, "%s%s", strchr(file, '/') == NULL ? "./" : "", file);
     /* Only machine files have segments; of a scenario n is 0. */
-    const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e)
+    struct origin *origin = NULL;
+    int norigin = 0;
+    const int n = plan_machine(&m, path.s, NULL, a, &origin, &norigin, &e)
                       ? software_segments(&m.software, list)
                       : 0;
+    const char *end = n > 0 && is_measured(origin, norigin) ? ", as measured" : ": is this intended?";
     for (int i = 1; i < n; i++) {
         /* The last size of one segment and the first of the next. */
         double below, at, size = (double)list[i].from;
@@ -109,10 +123,8 @@ static void tell_steps_down(const char *file)
             !probe_measure(&m, PROBE_ONE_WAY, size, 0, &at, &e))
             break;
         if (at < below)
-            fprintf(stderr,
-                    "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is this "
-                    "intended?\n",
-                    file, size - 1, below * 1e6, size, at * 1e6);
+            fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us%s\n",
+                    file, size - 1, below * 1e6, size, at * 1e6, end);
     }
     text_free(&path);
     arena_destroy(a);

@@ -2,6 +2,7 @@
  *
  * Rows of the same tables that files and --set are read by. A pattern is found anywhere in a key or
  * in what is said of it, so that "bandwidth" finds every rate. */
+#include <fnmatch.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +14,8 @@
 
 static const char doc[] =
     "List the settings of scenarios, machine files and --set: key, unit, range, default, meaning. "
-    "With PATTERN only those that have it in their key or their meaning.\n\n"
+    "With PATTERN only those that have it in their key or their meaning; with * and ? it is for keys "
+    "alone, as for files.\n\n"
     "Example: mimdsim keys bandwidth";
 
 /* One row as it is printed. */
@@ -97,6 +99,16 @@ static void print_object(struct json *j, const struct shown *s)
     json_end(j);
 }
 
+/* A part of the key or of its meaning; with * and ? a pattern for a part of the key, as of files. */
+static bool has_pattern(const struct shown *s, const char *pattern)
+{
+    char part[128];
+    if (strpbrk(pattern, "*?") == NULL)
+        return strstr(s->key, pattern) != NULL || strcasestr(s->meaning, pattern) != NULL;
+    snprintf(part, sizeof part, "*%s*", pattern);
+    return fnmatch(part, s->key, 0) == 0;
+}
+
 /* All rows that have the pattern, printed unless `print` is false; how many these are. */
 static int matching(const struct common *c, const char *pattern, bool print, struct json *j)
 {
@@ -106,7 +118,7 @@ static int matching(const struct common *c, const char *pattern, bool print, str
     for (int i = 0; i < ntable; i++)
         for (int k = 0; k < table[i]->nfield; k++) {
             const struct shown s = show(table[i], &table[i]->field[k]);
-            if (strstr(s.key, pattern) == NULL && strcasestr(s.meaning, pattern) == NULL) continue;
+            if (!has_pattern(&s, pattern)) continue;
             n++;
             if (print && c->json) print_object(j, &s);
             else if (print) print_line(&s);

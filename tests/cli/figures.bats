@@ -38,6 +38,9 @@ drawn() {
         tail -c 12 "$picture.png" | grep -aq IEND
         tail -c 8 "$picture.svg" | grep -q '</svg>'
         [ "$(grep -c '<path' "$picture.svg")" -gt 5 ]
+        # the name of a vertical axis is not cut at the left edge
+        grep -oE 'translate\([-0-9.]+,[-0-9.]+\) rotate\(270\)' "$picture.svg" | tr -c '0-9.\n-' ' ' | awk '$1 < 11 { exit 1 }' ||
+            { echo "$picture.svg: the name of an axis is cut"; return 1; }
     done
 }
 
@@ -79,6 +82,8 @@ shown() {
 
 @test "why, uncertainty, linkmap, pingpong and speedup" {
     for figure in why uncertainty linkmap pingpong speedup; do drawn $figure; done
+    # its numbers are as long as 0.0625
+    shown 'speedup S'
 }
 
 @test "every figure that made rows cannot draw is drawn here, or in tests of its own" {
@@ -88,6 +93,20 @@ shown() {
         [[ " explain interference " == *" $figure "* ]] || grep -qE "(drawn|for figure in).*\b$figure\b" "$BATS_TEST_DIRNAME/figures.bats" ||
             { echo "nobody draws $figure"; return 1; }
     done
+}
+
+@test "a vertical axis stands right of its longest number, so that its name has room" {
+    {
+        echo "figure = 'x'"
+        cat "$MIMDSIM_SRCDIR/plots/style.gp"
+        echo 'set print "letters"; print letters_log(10, 0.0002, 3), letters_log(2, 0.07, 16), letters_log(10, 1, 1e5), letters_even(0, 5), letters_even(0, 0.05), letters_even(-3000, 12000)'
+        echo 'set print "places"; do for [n=3:8] { print axis_px(n) }'
+    } >letters.gp
+    echo x >x.provenance
+    works gnuplot -d letters.gp
+    [ "$(cat letters)" = '6 6 6 3 5 6' ] || { cat letters; return 1; }
+    # a letter takes nine pixels, beside 40 for the name and the tics
+    awk -v n=3 '$1 < 40 + 9 * n { exit 1 } { n++ }' places
 }
 
 @test "a foot that is longer than the page goes on in further lines, none of them longer, and nothing is lost" {

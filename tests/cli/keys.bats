@@ -19,6 +19,11 @@ load helper
     # a pattern is looked for in the meaning, too
     works mimdsim keys 'payload rate'
     stdout_says machine.network.link.bandwidth
+    # a pattern as of files is for keys alone
+    works mimdsim keys 'link*width'
+    stdout_says machine.network.link.bandwidth
+    [ "$(grep -c '^machine' <<<"$output")" -eq 1 ]
+    fails_with 65 mimdsim keys 'payload*rate'
     fails_with 65 mimdsim keys hop_latancy
     stderr_says "did you mean"
     stdout_is_empty

@@ -38,6 +38,12 @@ EOF
     works mimdsim check my.yaml
     stderr_says "a message of 99 B takes"
     stderr_says "is this intended?"
+    # of measured segments nobody meant anything
+    machine '    - {from: 0 B, send.overhead: 9 us, class: measured, source: a host}
+    - {from: 100 B, send.overhead: 1 us, class: measured, source: a host}'
+    works mimdsim check my.yaml
+    stderr_says "us, as measured"
+    [[ $stderr != *intended* ]]
     machine '    - {from: 0 B, send.overhead: 1 us}
     - {from: 100 B, send.overhead: 9 us}'
     works mimdsim check my.yaml
