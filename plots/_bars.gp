@@ -60,6 +60,10 @@ do for [format in formats] {
         set xlabel vlabel noenhanced offset 0,name_lift(format)
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         set ytics () scale 0
+        # what the groups of bars are, above their names
+        group_y = at_y(upper + (m - 1)*panel_high + (panels > 1 ? 14 : -8))
+        if (6.6*strlen(xlabel) < left*wide - 16) { set label 95 xlabel at screen left - 0.012,group_y right noenhanced font tiny textcolor rgb grey } \
+        else { set label 95 xlabel at screen 0.008,group_y left noenhanced font tiny textcolor rgb grey }
         plot for [k=1:curves] data using (of(m, k, column("value")*vscale)):(y_of(column("xi"), k)):(base):(of(m, k, column("value")*vscale)):(y_of(column("xi"), k) - 0.42*bar_high/group_high):(y_of(column("xi"), k) + 0.42*bar_high/group_high) \
                 with boxxyerror fillcolor rgb colour[turn(k)] linewidth 0.3 notitle, \
              for [k=1:curves] data using (column("rows") > 1 ? of(m, k, column("value")*vscale) : NaN):(y_of(column("xi"), k)):(column("low")*vscale):(column("high")*vscale) \
@@ -68,6 +72,7 @@ do for [format in formats] {
                 with labels left offset 0.6,0 noenhanced font tiny notitle, \
              figure.".x.csv" using (base):"xi":yticlabels(strcol("x_text")) with points pointsize 0 notitle
     }
+    unset label 95
     unset multiplot
     unset output
 }

@@ -115,7 +115,8 @@ static void tell_steps_down(const char *file)
     const int n = plan_machine(&m, path.s, NULL, a, &origin, &norigin, &e)
                       ? software_segments(&m.software, list)
                       : 0;
-    const char *end = n > 0 && is_measured(origin, norigin) ? ", as measured" : ": is this intended?";
+    const char *end =
+        n > 0 && is_measured(origin, norigin) ? ", as measured" : ": is this intended?";
     for (int i = 1; i < n; i++) {
         /* The last size of one segment and the first of the next. */
         double below, at, size = (double)list[i].from;

@@ -14,8 +14,8 @@
 
 static const char doc[] =
     "List the settings of scenarios, machine files and --set: key, unit, range, default, meaning. "
-    "With PATTERN only those that have it in their key or their meaning; with * and ? it is for keys "
-    "alone, as for files.\n\n"
+    "With PATTERN only those that have it in their key or their meaning; with * and ? it is for "
+    "keys alone, as for files.\n\n"
     "Example: mimdsim keys bandwidth";
 
 /* One row as it is printed. */
@@ -99,7 +99,7 @@ static void print_object(struct json *j, const struct shown *s)
     json_end(j);
 }
 
-/* A part of the key or of its meaning; with * and ? a pattern for a part of the key, as of files. */
+/* A part of the key or of its meaning; with * and ? a pattern for a part of the key. */
 static bool has_pattern(const struct shown *s, const char *pattern)
 {
     char part[128];

@@ -155,10 +155,11 @@ static bool variants(struct chapter *c)
 
 /* --- figures ---------------------------------------------------------------------------------- */
 
-/* The comment that opens NAME.sql as the figure's caption, without the lines for the program. */
+/* The comment that opens NAME.sql as the figure's caption, without the lines for the program; the
+ * first part of a query that has several ends it. */
 static void caption(const char *sql, struct text *out)
 {
-    while (strncmp(sql, "-- ", 3) == 0) {
+    while (strncmp(sql, "-- ", 3) == 0 && strncmp(sql, "-- shared:", 10) != 0) {
         size_t n = strcspn(sql, "\n");
         if (strncmp(sql, "-- needs:", 9) != 0 && strncmp(sql, "-- each:", 8) != 0) {
             if (out->length) text_add(out, " ");

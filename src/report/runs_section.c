@@ -15,7 +15,9 @@ struct section {
 /* A line for each machine and level; a changed machine says how it differs from the shipped one.
  * Runs that failed are counted here, as no figure shows them. */
 static const char machines_of[] =
-    "SELECT l.name AS machine, ifnull(nullif(r.machine_changes, '{}'), '') AS changes, r.level, "
+    "SELECT l.name AS machine, ifnull((SELECT group_concat(key || ' ' || value, ', ') FROM "
+    "json_each(iif(json_valid(r.machine_changes), r.machine_changes, '{}'))), '') AS changes, "
+    "r.level, "
     "count(*) AS runs, sum(r.status <> 'ok') AS failed, iif(min(r.n) = max(r.n), format('%d', "
     "min(r.n)), format('%d to %d', min(r.n), max(r.n))) AS n, iif(min(r.P) = max(r.P), "
     "format('%d', min(r.P)), format('%d to %d', min(r.P), max(r.P))) AS P, format('%.4g', "

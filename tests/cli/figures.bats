@@ -128,3 +128,17 @@ shown() {
         done
     done
 }
+
+@test "a report has what was changed of a machine in words, and captions without lines for the program" {
+    works mimdsim run speedup-t3e --set n=2,4 --set level=loggp --set machine=t3e-300,paragon -o two.db -q
+    works mimdsim run speedup-t3e --set n=4 --set level=loggp --set machine.node.call='1 us' --set machine.network.hop_latency='2 us' \
+        --name Slow -o two.db -q
+    works mimdsim report two.db -q
+    grep -F '>Slow</td>' two.html | grep -F 'node.call 1 us' | grep -qF 'network.hop_latency 2 us'
+    ! grep -qF '{&quot;' two.html
+    grep -q 'Figure 6 for several machines' two.md
+    ! grep -qE '(shared|main|table): *(</|$)' two.md two.html
+    # a link of the contents for each heading of the second level, and no two alike
+    [ "$(grep -c '<h2 id=' two.html)" -gt 4 ]
+    [ -z "$(grep -oE '<h2 id="[^"]*"' two.html | sort | uniq -d)" ]
+}
