@@ -101,6 +101,12 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
     return *kept;
 }
 
+void store_forget(struct store *s)
+{
+    for (int i = 0; i < STATEMENT_COUNT; i++) sqlite3_finalize(s->statement[i]);
+    memset(s->statement, 0, sizeof s->statement);
+}
+
 /* A loop that ends at the first step without a row would take an error for the end. */
 bool store_next(struct store *s, sqlite3_stmt *q, bool *row, struct err *e)
 {

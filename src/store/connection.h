@@ -62,6 +62,7 @@ struct store {
     bool writable;
     bool fresh;                               /* its file was made by this store_open */
     bool unpublished;                         /* STORE_WHOLE: its file is still to be made */
+    bool front;                               /* it shows what a single run needs alone (image.h) */
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */
     /* when others wrote last, and since when nobody has (guard.c) */
@@ -70,6 +71,13 @@ struct store {
     int64_t build_id;
     sqlite3_stmt *statement[STATEMENT_COUNT]; /* owned, NULL until used */
 };
+
+/* store_forget: the prepared statements are prepared anew when they are used again. */
+void store_forget(struct store *s);
+
+/* store_show: from here on the database shows all its tables and views; nothing to do where it
+ * does. Not within a transaction. Returns false with *e set. */
+bool store_show(struct store *s, struct err *e);
 
 /* store_statement: the prepared statement, reset and without bindings; NULL with the error set. */
 sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e);

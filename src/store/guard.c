@@ -118,7 +118,8 @@ static int wait_for_lock(void *context, int tries)
 
 void guard_library(void)
 {
-    /* Refused, which is no harm, once the library is in use. */
+    /* Refused, which is no harm, once the library is in use; looking for a file system is use
+     * enough. */
     sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
     /* One thread of the process has databases; the threads of a run compute. A small run would take
      * some twenty thousand locks that nobody else asks for. */

@@ -62,17 +62,50 @@ bool image_write(int file, bool wal)
     return ok;
 }
 
-/* SQLite works on a copy of the bytes as on a file: pages that nobody asks for are never looked
- * at. */
-bool image_load(sqlite3 *db)
+/* SQLite works on the bytes as on a file: pages that nobody asks for are never looked at. */
+bool image_take(sqlite3 *db, unsigned char *bytes, size_t size)
+{
+    sqlite3_int64 most = INT64_MAX, n = (sqlite3_int64)size; /* most: instead of 1 GiB */
+    const unsigned how = SQLITE_DESERIALIZE_RESIZEABLE | SQLITE_DESERIALIZE_FREEONCLOSE;
+    return sqlite3_deserialize(db, "main", bytes, n, n, how) == SQLITE_OK &&
+           sqlite3_file_control(db, "main", SQLITE_FCNTL_SIZE_LIMIT, &most) == SQLITE_OK;
+}
+
+bool image_load(sqlite3 *db, bool front)
 {
     if (schema_image_bytes == 0) return from_text(db);
-    const sqlite3_int64 size = (sqlite3_int64)schema_image_bytes;
     unsigned char *copy = sqlite3_malloc64(schema_image_bytes);
     if (copy == NULL) check_memory(schema_image_bytes);
     memcpy(copy, schema_image, schema_image_bytes);
-    sqlite3_int64 most = INT64_MAX; /* instead of 1 GiB */
-    const unsigned how = SQLITE_DESERIALIZE_RESIZEABLE | SQLITE_DESERIALIZE_FREEONCLOSE;
-    return sqlite3_deserialize(db, "main", copy, size, size, how) == SQLITE_OK &&
-           sqlite3_file_control(db, "main", SQLITE_FCNTL_SIZE_LIMIT, &most) == SQLITE_OK;
+    if (front) image_hide(copy);
+    return image_take(db, copy, schema_image_bytes);
+}
+
+/* ---- the front ----
+ *
+ * SQLite parses the text of every table and view before its first statement, which takes longer
+ * than a small run. The rows of the schema's table lie in pages below its root, in the order in
+ * which they were made, and the root is the first page of the file: with fewer cells it has fewer
+ * rows. Pages of tables that are not seen are touched by nobody. */
+
+enum { CELLS_AT = HEADER_BYTES + 3, LAST_PAGE_AT = HEADER_BYTES + 8 };
+
+bool image_has_front(void) { return schema_front_page > 0; }
+
+/* Numbers of the file format have their highest byte first. */
+static void put_number(unsigned char *at, unsigned v, int n)
+{
+    for (int i = n - 1; i >= 0; i--, v >>= 8) at[i] = (unsigned char)v;
+}
+
+void image_hide(unsigned char *bytes)
+{
+    put_number(bytes + CELLS_AT, schema_front_cells, 2);
+    put_number(bytes + LAST_PAGE_AT, schema_front_page, 4);
+}
+
+void image_show(unsigned char *bytes)
+{
+    memcpy(bytes + CELLS_AT, schema_image + CELLS_AT, 2);
+    memcpy(bytes + LAST_PAGE_AT, schema_image + LAST_PAGE_AT, 4);
 }

@@ -164,11 +164,13 @@ static bool write_column(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
-/* Every column in the order in which tables, then views, were made. A key is never NULL. */
+/* Every column of tables, then of views, in the order of the text, ?1: nothing refers to a table
+ * before it is made. A key is never NULL. */
 static const char structure_sql[] =
     "SELECT m.type, m.name, p.name, coalesce(nullif(p.type, ''), 'computed'), p.\"notnull\" OR "
     "p.pk > 0, p.pk FROM sqlite_schema m, pragma_table_info(m.name) p WHERE m.type IN ('table', "
-    "'view') AND m.name NOT LIKE 'sqlite%' ORDER BY m.type, m.rowid, p.cid";
+    "'view') AND m.name NOT LIKE 'sqlite%' ORDER BY m.type, instr(?1, ' ' || m.name || "
+    "iif(m.type = 'view', ' AS', ' (')), p.cid";
 
 bool store_document(FILE *out, struct err *e)
 {
@@ -182,7 +184,7 @@ bool store_document(FILE *out, struct err *e)
         fprintf(out, "%.*s", (int)(next_line(line) - line) - 3, line + 3);
     fprintf(out, "\n`mimdsim query --schema` writes this page. `NULL` behind a type: the value may "
                  "be unknown; `key`: part of the\nprimary key.\n");
-    bool ok = s != NULL && store_select(s, structure_sql, 0, NULL, write_column, &d, e);
+    bool ok = s != NULL && store_select(s, structure_sql, 1, &d.schema, write_column, &d, e);
     store_close(s);
     text_free(&schema);
     return ok;

@@ -233,9 +233,10 @@ static bool open_memory(struct store *s, enum store_mode mode, struct err *e)
     if (sqlite3_open_v2(":memory:", &s->db, how, NULL) != SQLITE_OK) return store_failed(s, e);
     s->passing = mode == STORE_MEMORY;
     s->unpublished = mode == STORE_WHOLE;
+    s->front = s->unpublished && image_has_front();
     if (!guard_begin(s, e)) return false;
     guard_trust(s);
-    return (image_load(s->db) || store_failed(s, e)) &&
+    return (image_load(s->db, s->front) || store_failed(s, e)) &&
            store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }
 
@@ -243,12 +244,12 @@ static bool open_memory(struct store *s, enum store_mode mode, struct err *e)
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists = true;
+    guard_library(); /* before anything else of SQLite's */
     if (mode == STORE_WRITE || mode == STORE_WHOLE) beside_clean(path);
     const bool memory = mode == STORE_MEMORY || mode == STORE_SCRATCH;
     if (!memory && !check_path(path, mode, &exists, e)) return NULL;
     const bool later = !exists && mode == STORE_WHOLE;
     if (!exists && !later && !publish_new(path, e)) return NULL;
-    guard_library();
     struct store *s = memory_zeroed(1, sizeof *s);
     s->path = memory_text(path);
     s->writable = mode != STORE_READ;
@@ -266,7 +267,7 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 void store_close(struct store *s)
 {
     if (s == NULL) return;
-    for (int i = 0; i < STATEMENT_COUNT; i++) sqlite3_finalize(s->statement[i]);
+    store_forget(s);
     if (s->in_transaction) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     CHECK(sqlite3_close(s->db) == SQLITE_OK);
     free(s->path);

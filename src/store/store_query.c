@@ -77,6 +77,17 @@ static bool has_statement(struct store *s, const char *sql)
     return more;
 }
 
+/* Prepare the first statement of `sql`; *rest (may be NULL) is what stands behind it. Where it asks
+ * for what the database does not show so far (image.h), it is shown. */
+static bool prepare_shown(struct store *s, const char *sql, sqlite3_stmt **q, const char **rest,
+                          struct err *e)
+{
+    if (sqlite3_prepare_v2(s->db, sql, -1, q, rest) == SQLITE_OK) return true;
+    if (!s->front || s->in_transaction) return store_failed(s, e);
+    return store_show(s, e) && (sqlite3_prepare_v2(s->db, sql, -1, q, rest) == SQLITE_OK ||
+                                store_failed(s, e));
+}
+
 /* One statement with its parameters bound, or NULL with *e set. Everything that a user can write
  * wrongly is told here: more than one statement, none, a change in a database that is only read,
  * too few parameters. */
@@ -85,10 +96,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
 {
     sqlite3_stmt *q = NULL;
     const char *rest = "";
-    if (sqlite3_prepare_v2(s->db, sql, -1, &q, &rest) != SQLITE_OK) {
-        store_failed(s, e);
-        return NULL;
-    }
+    if (!prepare_shown(s, sql, &q, &rest, e)) return NULL;
     /* SQLite runs the first statement and ignores the rest: what would be ignored must not look
      * done. */
     if (has_statement(s, rest)) {
@@ -178,7 +186,7 @@ static bool run_once(struct store *s, const char *sql, int nvalue, const struct 
     /* Rows are inserted only through a connection that was opened for writing: else it is our
      * mistake, not the user's. */
     CHECK(s->writable);
-    if (sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK) return store_failed(s, e);
+    if (!prepare_shown(s, sql, &q, NULL, e)) return false;
     for (int i = 0; i < nvalue; i++) bind_value(q, i + 1, &value[i]);
     bool ok = sqlite3_step(q) == SQLITE_DONE || store_failed(s, e);
     sqlite3_finalize(q);

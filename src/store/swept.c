@@ -108,7 +108,7 @@ bool store_swept_view(struct store *s, struct err *e)
     const bool same = before.length == now.length &&
                       (now.length == 0 || strcmp(before.s, now.s) == 0);
     if (ok && !foreign && !same) {
-        ok = store_begin(s, e) &&
+        ok = store_show(s, e) && store_begin(s, e) &&
              (before.length == 0 || store_exec(s, "DROP VIEW v_swept", e)) &&
              (now.length == 0 || store_exec(s, now.s, e));
         if (ok) ok = store_commit(s, e);

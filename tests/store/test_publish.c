@@ -16,6 +16,7 @@
 #include "base/arena.h"
 #include "../support/made_run.h"
 #include "../support/scratch.h"
+#include "store/image.h"
 #include "store/store.h"
 
 struct fixture {
@@ -135,6 +136,52 @@ static void it_is_a_database_like_any_other(void **state)
     assert_int_equal(files_in(f->folder), 1);
 }
 
+static const char objects[] = "SELECT count(*) FROM sqlite_schema",
+                  whole[] = "SELECT count(*) FROM pragma_integrity_check WHERE "
+                            "integrity_check = 'ok'",
+                  indexed[] = "SELECT count(*) FROM run INDEXED BY run_by_point WHERE machine = "
+                              "'t3e-300'";
+
+/* Tables and views that a single run does not need are not shown at first: SQLite does not parse
+ * them. The file has them, and so has whoever asks for one. */
+static void all_tables_are_there_for_who_asks(void **state)
+{
+    struct fixture *f = *state;
+    struct store *s = opened(f, STORE_SCRATCH);
+    const long all = number(f, s, objects);
+    store_close(s);
+    for (int late = 0; late < 2; late++) {
+        unlink(f->path);
+        s = opened(f, STORE_WHOLE);
+        put(f, s, 0);
+        const long shown = number(f, s, objects);
+        assert_true(shown > 20 && (image_has_front() ? shown < all : shown == all));
+        /* before the file is made, and after */
+        if (late) assert_true(store_publish(s, &f->e));
+        assert_int_equal(number(f, s, objects), shown);
+        assert_int_equal(number(f, s, "SELECT count(*) FROM v_stage"), 7);
+        assert_int_equal(number(f, s, objects), all);
+        assert_int_equal(number(f, s, whole), 1);
+        /* it goes on as before */
+        put(f, s, 1);
+        assert_int_equal(number(f, s, "SELECT count(*) FROM run"), 2);
+        if (!late) assert_true(store_publish(s, &f->e));
+        store_close(s);
+        assert_int_equal(runs_in_file(f), late ? 1 : 2);
+        s = opened(f, STORE_READ);
+        assert_int_equal(number(f, s, objects), all);
+        assert_int_equal(number(f, s, whole), 1);
+        assert_int_equal(number(f, s, indexed), late ? 1 : 2);
+        store_close(s);
+    }
+    /* a row of a study */
+    unlink(f->path);
+    s = opened(f, STORE_WHOLE);
+    assert_true(store_delete(s, "ladder_choice", "scenario", store_text("none"), &f->e));
+    assert_int_equal(number(f, s, objects), all);
+    store_close(s);
+}
+
 static void without_publishing_nothing_is_left(void **state)
 {
     struct fixture *f = *state;
@@ -218,6 +265,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_file_is_there_when_it_is_whole, begin, end),
         cmocka_unit_test_setup_teardown(it_is_a_database_like_any_other, begin, end),
+        cmocka_unit_test_setup_teardown(all_tables_are_there_for_who_asks, begin, end),
         cmocka_unit_test_setup_teardown(without_publishing_nothing_is_left, begin, end),
         cmocka_unit_test_setup_teardown(a_database_that_is_there_is_written_at_once, begin, end),
         cmocka_unit_test_setup_teardown(rows_join_those_of_a_program_that_was_faster, begin, end),
