@@ -1,7 +1,9 @@
 /* bench_net.c - messages per second of the network levels: recursive doubling on large machines,
  * random loads beside the cycle-by-cycle router simulator BookSim 2.0.
  *
- *     bench_net [LEVEL...]      loggp link packet flit auto; all of them when none is named
+ *     bench_net [LIST...] [LEVEL...]    doubling load routed; loggp link packet flit auto
+ *
+ * All lists when none is named, all levels likewise.
  *
  * Seconds are of the processor, best of three; events include the one with which the replay starts
  * each message. */
@@ -47,14 +49,14 @@ static void doubling(struct job *j)
     int n = nnode * steps;
     struct traffic *q = &j->q;
     struct arena *a = j->arena;
-    *q = (struct traffic){n,
-                          TAKE(a, n, int),
-                          TAKE(a, n, int),
-                          TAKE(a, n, int64_t),
-                          TAKE(a, n, sim_ps),
-                          TAKE(a, n, sim_ps),
-                          TAKE(a, n + 1, int),
-                          TAKE(a, 2 * n, int)};
+    *q = (struct traffic){.nmessage = n,
+                          .src = TAKE(a, n, int),
+                          .dst = TAKE(a, n, int),
+                          .bytes = TAKE(a, n, int64_t),
+                          .time = TAKE(a, n, sim_ps),
+                          .delay = TAKE(a, n, sim_ps),
+                          .dep_first = TAKE(a, n + 1, int),
+                          .dep = TAKE(a, 2 * n, int)};
     for (int k = 0; k < n; k++) {
         int step = k / nnode, i = k % nnode, before = (step - 1) * nnode;
         q->src[k] = i;
@@ -238,15 +240,27 @@ static void bench_routed(const bool *wanted)
 
 int main(int argc, char **argv)
 {
-    bool wanted[LEVELS];
-    for (int l = 0; l < LEVELS; l++) wanted[l] = argc == 1;
-    for (int i = 1; i < argc; i++)
+    static const struct {
+        const char *name;
+        void (*bench)(const bool *wanted);
+    } list[] = {{"doubling", bench_doubling}, {"load", bench_loads}, {"routed", bench_routed}};
+    enum { LISTS = sizeof list / sizeof *list };
+    bool wanted[LEVELS] = {false}, listed[LISTS] = {false}, levels = false, lists = false;
+    for (int i = 1; i < argc; i++) {
+        bool known = false;
         for (int l = 0; l < LEVELS; l++)
-            if (strcmp(argv[i], netcheck_level_name((enum network_level)l)) == 0) wanted[l] = true;
+            if (strcmp(argv[i], netcheck_level_name((enum network_level)l)) == 0)
+                wanted[l] = levels = known = true;
+        for (int k = 0; k < LISTS; k++)
+            if (strcmp(argv[i], list[k].name) == 0) listed[k] = lists = known = true;
+        if (known) continue;
+        fprintf(stderr, "bench_net: %s: expected doubling, load, routed or a level\n", argv[i]);
+        return 64;
+    }
     printf("%-26s %-7s %9s %10s %9s %9s %9s %10s\n", "pattern", "level", "messages", "messages/s",
            "ns/mess.", "ev./mess.", "B/node", "BookSim");
-    bench_doubling(wanted);
-    bench_loads(wanted);
-    bench_routed(wanted);
+    for (int l = 0; l < LEVELS; l++) wanted[l] = wanted[l] || !levels;
+    for (int k = 0; k < LISTS; k++)
+        if (listed[k] || !lists) list[k].bench(wanted);
     return 0;
 }

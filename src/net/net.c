@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "net/net_internal.h"
+#include "net/net_router.h"
 #include "net/net_way.h"
 
 static const struct net_type *const levels[] = {
@@ -184,6 +185,11 @@ void net_set_in_order(struct net *n, bool in_order)
 {
     if (n->type != &net_loggp && n->type != &net_link) return; /* the others need an event anyway */
     n->port_private = in_order && n->topology->spec->processors_per_node == 1;
+}
+
+bool net_gather(struct net *n)
+{
+    return (n->type == &net_routed_packet || n->type == &net_routed_flit) && router_gather(n);
 }
 
 void net_foresee(struct net *n, net_early_fn *early)

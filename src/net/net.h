@@ -100,6 +100,11 @@ struct net *net_share(const struct net *n, void *context, struct arena *a);
 typedef void net_early_fn(const struct net_message *m, int step);
 void net_foresee(struct net *n, net_early_fn *early);
 
+/* net_gather: from now on all that is to be looked at in one instant shares an event, and a message
+ * is handed over as soon as its arrival is known, which may lie ahead: the same times to the bit,
+ * with fewer events. Returns whether this level does it. Call it before any message is sent. */
+bool net_gather(struct net *n);
+
 /* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL:
  * do not. Call it before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);

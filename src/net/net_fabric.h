@@ -108,6 +108,10 @@ struct fabric {
     /* resource `argument` begins to serve others, for debt[argument] */
     sim_action *occupied;
     sim_ps *debt;                 /* (nresource) NULL until used */
+    /* sees that resource r is looked at, without an event of its own; NULL: packet_wake posts one
+     */
+    void (*wake)(struct fabric *f, int r, sim_ps at);
+    bool ahead;                   /* messages are handed over when their arrival is known */
     bool cuts;                    /* messages larger than a buffer travel in pieces of its size */
     struct source *source;        /* (nnode) */
     struct hop *way;              /* (max_hops + 2) scratch: the route of the message being made */
@@ -116,6 +120,10 @@ struct fabric {
     int nprocessor, nchannel, nlane; /* channels per link; channels per class */
     int nclass;
     int buffer;                   /* flits per channel */
+    /* how a message of cut_bytes, the last one, was cut; -1: none yet */
+    int64_t cut_bytes;
+    int cut_packets;
+    int32_t cut_full, cut_last;
     sim_ps late;                  /* when a message was delivered last in LANE_LATE, -1: never */
     sim_ps fastest;               /* flit time of the fastest resource */
     bool first_come;

@@ -27,7 +27,17 @@ static void wake_in(struct fabric *f, int r, sim_ps at, unsigned lane)
            (uint64_t)(lane == LANE_AGAIN) << 32 | (uint64_t)r);
 }
 
-void packet_wake(struct fabric *f, int r, sim_ps at) { wake_in(f, r, at, NET_LANE_ARBITRATE); }
+void packet_wake(struct fabric *f, int r, sim_ps at)
+{
+    struct resource *o = &f->resource[r];
+    if (!f->wake) {
+        wake_in(f, r, at, NET_LANE_ARBITRATE);
+        return;
+    }
+    if (o->wake && o->wake <= at + 1) return;
+    o->wake = at + 1;
+    f->wake(f, r, at);
+}
 
 static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
@@ -198,6 +208,14 @@ static void packet_delivered(void *subject, uint64_t argument, sim_ps now)
 
 void packet_deliver_at(struct fabric *f, struct flight *w, sim_ps arrival)
 {
+    struct net_message *m = w->m;
+    /* Who starts when it arrives may come no sooner than after the grants of that instant. */
+    if (f->ahead && net_end(f->net, m->bytes) > 0) {
+        m->arrival = arrival;
+        flight_return(f, w);
+        net_arrive(f->net, m);
+        return;
+    }
     w->arrival = arrival;
     if (w->foreseen == arrival) return;
     unsigned lane = net_end(f->net, w->m->bytes) > 0 ? NET_LANE_FREE : LANE_LATE;

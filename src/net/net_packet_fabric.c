@@ -85,7 +85,7 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     /* Channels of one class; those left over by the division stay idle on links. */
     f->nlane = f->nchannel / f->nclass;
     f->buffer = w->buffer_flits;
-    f->late = -1;
+    f->late = f->cut_bytes = -1;
     f->fastest = fastest_flit(n);
     f->first_come = w->arbitration == ARBITRATION_FIRST_COME;
     f->resource = TAKE(n->arena, n->nresource, struct resource);
@@ -186,9 +186,16 @@ void flight_return(struct fabric *f, struct flight *w)
 
 /* Cut the message into packets; one that is larger than a buffer travels in pieces of a buffer's
  * size, without headers of their own. */
-static void flight_cut(const struct fabric *f, struct flight *w)
+static void flight_cut(struct fabric *f, struct flight *w)
 {
     const struct net *n = f->net;
+    /* Mostly as long as the one before: divisions of 64 bits take longer than to remember. */
+    if (w->m->bytes == f->cut_bytes) {
+        w->npacket = f->cut_packets;
+        w->full = f->cut_full;
+        w->last = f->cut_last;
+        return;
+    }
     int64_t bytes = w->m->bytes, packets = net_packets(n, bytes);
     int64_t last = net_packet_flits(n, bytes, packets - 1),
             full = packets > 1 ? net_packet_flits(n, bytes, 0) : last;
@@ -198,9 +205,10 @@ static void flight_cut(const struct fabric *f, struct flight *w)
         last -= (packets - 1) * full;
     }
     CHECK(packets <= INT32_MAX);
-    w->npacket = (int)packets;
-    w->full = (int32_t)full;
-    w->last = (int32_t)last;
+    w->npacket = f->cut_packets = (int)packets;
+    w->full = f->cut_full = (int32_t)full;
+    w->last = f->cut_last = (int32_t)last;
+    f->cut_bytes = bytes;
 }
 
 /* A link offers the channels of the message's deadlock class; ports offer all of them. No flit

@@ -5,20 +5,17 @@
  * latency after it crossed the last one, the setup of the router is its alone, and a flit needs the
  * credit of the flit a buffer's size earlier. A router is looked at when something can happen in
  * it: then all that asks at this instant is served together (net_router_allocate.c). */
+#include "net/net_router_gather.h"
 #include "net/net_router_lane.h"
 
 /* Second look at a router at the same time. */
 enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
 
-/* ---- events ---- */
-
-void router_wake(struct routers *g, int r, sim_ps at)
+/* An event that an earlier one overtook is still to come. */
+void router_post(struct routers *g, int r, sim_ps at)
 {
     struct router *o = &g->router[r];
     const struct net *n = g->fabric.net;
-    if (o->wake && o->wake <= at + 1) return;
-    o->wake = at + 1;
-    /* An event that an earlier one overtook is still to come. */
     sim_ps *place = NULL;
     for (int i = 0; i < ROUTER_POSTED; i++) {
         if (o->posted[i] == at + 1) return;
@@ -112,11 +109,11 @@ int64_t router_used(const void *of, int link)
         const struct lane *v = &p->lane[i];
         used += v->in - v->out;
         for (int64_t k = v->out - 1; k >= 0 && k >= v->out - g->ring; k--) {
-            if (v->go[k & g->ring] + late <= g->now) break;
+            if (v->stay[k & g->ring].go + late <= g->now) break;
             used++;
         }
         for (int64_t k = v->in - 1; k >= 0 && k >= v->in - g->ring; k--) {
-            if (v->come[k & g->ring] < sent) break;
+            if (v->stay[k & g->ring].come < sent) break;
             used--;
         }
     }
@@ -143,6 +140,16 @@ void router_own(struct routers *g, struct lane *v, struct lane *out)
     routing_take(g->routing, &l->worm->route, o, out->channel);
 }
 
+/* Whether a head at router r may want a channel that is free from `at` on: none does that comes
+ * later. */
+static bool somebody_asks(const struct routers *g, int r, sim_ps at)
+{
+    const struct lane *w = g->router[r].busy;
+    if (!g->spares) return w != NULL;
+    while (w && (w->state == LANE_SENDING || w->due > at)) w = w->busy;
+    return w != NULL;
+}
+
 /* The tail of v's front crosses port p: the channel is free for the next, v has a new front, and at
  * the end of the way the message may be complete. */
 static void tail_sent(struct routers *g, struct lane *v, struct leg *m, sim_ps tail, sim_ps flit)
@@ -165,7 +172,7 @@ static void tail_sent(struct routers *g, struct lane *v, struct leg *m, sim_ps t
     router_front(g, v);
     /* Others may want the channel. */
     const int r = g->port[v->port].to;
-    if (g->router[r].busy) router_wake(g, r, out->free);
+    if (somebody_asks(g, r, out->free)) router_wake(g, r, out->free);
     if (!last) return;
     /* The message is there with the last tail of its packets. */
     if (++s->ejected == s->npacket)
@@ -183,7 +190,7 @@ static void flits_arrive(struct routers *g, struct leg *m, struct lane *out, int
     /* The setup part of the hop latency is the head's alone; router_front adds it. */
     const sim_ps there = now + n->tau - n->setup + p->wire;
     const bool head = m->sent == flits;
-    for (int32_t j = 0; j < flits; j++) out->come[out->in++ & g->ring] = there + j * p->flit;
+    for (int32_t j = 0; j < flits; j++) out->stay[out->in++ & g->ring].come = there + j * p->flit;
     if (out->front != m) return;
     if (head) router_front(g, out);
     else if (out->state == LANE_SENDING) router_wake(g, p->to, there);
@@ -202,7 +209,7 @@ static sim_ps competes(const struct routers *g, const struct lane *v, const stru
         const struct leg *m = w->front->ahead;
         left -= m->sent;
         if (meets || m->port == out)
-            return w->out < w->in ? w->come[w->out & g->ring] : now + n->tau - n->setup;
+            return w->out < w->in ? w->stay[w->out & g->ring].come : now + n->tau - n->setup;
     } else {
         for (int i = 0; (i == 0 || i < w->noption) && !meets; i++)
             meets = router_out(g, w, w->noption > 0 ? &w->option[i] : NULL) == out;
@@ -235,8 +242,8 @@ static sim_ps cross(struct routers *g, struct lane *v, struct leg *m, sim_ps now
     sim_ps tail = now + (flits - 1) * p->flit;
     if (g->whole) tail = router_later(tail, v->front->tail + f->net->tau + in->wire);
     m->tail = tail;
-    f->resource[m->port].free = in->passed = ps_later(tail, p->flit);
-    for (int32_t j = 0; j < flits; j++) v->go[v->out++ & g->ring] = now + j * p->flit;
+    g->port[m->port].free = in->passed = ps_later(tail, p->flit);
+    for (int32_t j = 0; j < flits; j++) v->stay[v->out++ & g->ring].go = now + j * p->flit;
     if (!net_is_ejection(f->net, m->port)) flits_arrive(g, m, &p->lane[m->channel], flits, now);
     return tail;
 }
@@ -252,11 +259,11 @@ static sim_ps train(struct routers *g, struct lane *v, struct leg *m, struct lan
     const sim_ps way = n->tau - n->setup + p->wire, until = undisputed(g, v, m->port, now);
     sim_ps last = now;
     for (int i = 1; i < ROUTER_AHEAD && m->sent < m->worm->flits && v->out < v->in; i++) {
-        sim_ps at = router_later(v->come[v->out & g->ring], last + p->flit);
+        sim_ps at = router_later(v->stay[v->out & g->ring].come, last + p->flit);
         if (at < until && !sink) at = router_room(g, out, 1, at);
         if (at >= until) break;
-        v->go[v->out++ & g->ring] = last = at;
-        if (!sink) out->come[out->in++ & g->ring] = at + way;
+        v->stay[v->out++ & g->ring].go = last = at;
+        if (!sink) out->stay[out->in++ & g->ring].come = at + way;
         m->sent++;
     }
     if (last == now) return now;
@@ -264,7 +271,7 @@ static sim_ps train(struct routers *g, struct lane *v, struct leg *m, struct lan
     p->grant = in->in + 1;
     in->accept = p->out + 1;
     m->tail = last;
-    g->fabric.resource[m->port].free = in->passed = ps_later(last, p->flit);
+    g->port[m->port].free = in->passed = ps_later(last, p->flit);
     return last;
 }
 
@@ -282,6 +289,6 @@ void router_send(struct routers *g, struct lane *v, sim_ps now)
     if (m->sent == m->worm->flits) {
         tail_sent(g, v, m, tail, p->flit);
     } else if (v->out < v->in) {
-        router_wake(g, in->to, router_later(in->passed, v->come[v->out & g->ring]));
+        router_wake(g, in->to, router_later(in->passed, v->stay[v->out & g->ring].come));
     }
 }

@@ -39,53 +39,57 @@ enum lane_state {
     LANE_SENDING  /* it has one */
 };
 
-/* A virtual channel of a port, and the FIFO at its end. */
+/* A flit in a FIFO: when it comes, and when it goes, whose credit the flit a buffer's size later
+ * needs. Both may lie ahead (router_send). */
+struct stay {
+    sim_ps come, go;
+};
+
+enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
+
+/* A virtual channel of a port, and the FIFO at its end. What a router asks of a channel that it may
+ * give lies in the first line, what it asks of a FIFO in the second. */
 struct lane {
-    struct leg *owner;        /* who sends over it, from its head to its tail */
-    sim_ps free;              /* when the next may own it, if nobody does */
-    struct leg *front, *back; /* worms in the FIFO */
-    sim_ps left;              /* when the tail of the one that left last had left */
-    int64_t in, out;          /* flits that ever entered and left */
-    sim_ps *come, *go; /* (ring) of flit n: its arrival; its departure, whose credit flit n + buffer
-                          needs. Both may lie ahead (router_send) */
-    int32_t port, channel;
-    enum lane_state state;
-    sim_ps due;
-    struct route_option *option; /* (noption) of the front, none: to its node */
-    int noption, room;
-    int out_first, out_count; /* channels to its node */
-    bool starved;             /* somebody upstream waits for a flit of it to be sent */
-    bool bars; /* one of its options has no channel, which spoils its turn at the switch */
-    struct lane *busy, **busy_link; /* the router's lanes that have a front */
+    _Alignas(ROUTER_LINE) struct leg *owner; /* who sends over it, from its head to its tail */
+    sim_ps free;            /* when the next may own it, if nobody does */
+    int64_t in, out;        /* flits that ever entered and left */
+    struct stay *stay;      /* (ring) of flit n */
+    sim_ps due;             /* see lane_state */
     uint32_t accept, grant; /* round robin: as a FIFO that asks, as a channel that is given */
+    int32_t port;
+    int16_t channel;
+    bool starved; /* somebody upstream waits for a flit of it to be sent */
+    bool bars;    /* one of its options has no channel, which spoils its turn at the switch */
+
+    struct leg *front, *back;        /* worms in the FIFO */
+    struct route_option *option;     /* (noption) of the front, none: to its node */
+    struct lane *busy, **busy_link;  /* the router's lanes that have a front */
+    sim_ps left;                     /* when the tail of the one that left last had left */
+    enum lane_state state;
+    int noption;
+    int out_first, out_count; /* channels to its node */
+
+    int room; /* options that there is memory for */
     /* Of one allocation: */
-    struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */
     int pick_priority;
+    struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */
 };
 
 /* A link, or a node's way in or out. */
 struct port {
-    struct lane *lane; /* (channels), NULL until used */
+    _Alignas(ROUTER_LINE) struct lane *lane; /* (channels), NULL until used */
     sim_ps flit, wire; /* time of a flit; what the cable adds to the hop latency */
     sim_ps passed;     /* when the FIFOs at its end can pass on the next flit */
-    int32_t from, to;  /* routers, -1: a node */
+    sim_ps free;       /* of a link or way out: when it can take the next flit */
+    int32_t to;        /* router at its end, -1: a node */
     uint32_t in, out;  /* its number among the inputs of `to`, among the outputs of `from` */
     /* The switch: round robin as an input and as an output, channel whose turn it is. */
     uint32_t accept, grant;
     int turn;
-    int enter; /* way in: channel whose turn it is to take the next packet */
-    struct port *match, *wish, *pick;
-};
 
-/* A FIFO's request for a channel, and its bid for the way through the switch. */
-struct ask {
-    struct lane *in, *out;
-    int priority;
-};
-struct bid {
-    struct lane *lane;
-    struct port *in, *out;
-    bool spec; /* its channel is still being asked for */
+    int32_t from; /* router, -1: a node */
+    int enter;    /* way in: channel whose turn it is to take the next packet */
+    struct port *match, *wish, *pick;
 };
 
 enum { ROUTER_POSTED = 3 };
@@ -100,6 +104,7 @@ struct routers {
     struct fabric fabric; /* first */
     const struct routing *routing;
     sim_action *look;      /* what an event of a router does: router_look */
+    void (*post)(struct routers *g, int r, sim_ps at); /* see that r is looked at, at time `at` */
     bool whole;            /* packets move as one: level packet */
     bool priority;         /* allocation of channels obeys the options' priorities */
     bool strict;           /* heads bid for all their options, as in BookSim's router */
@@ -112,21 +117,18 @@ struct routers {
     struct worm **waiting; /* (nnode) packets that wait for a channel into the network */
     struct worm *free_worm;
     struct leg *free_leg;
-    struct ask *ask; /* (room) scratch of one allocation */
+    struct ask *ask; /* (room) scratch of one allocation (net_router_allocate.c) */
     struct bid *bid;
-    int nask, nbid, ask_room, bid_room;
+    struct lane **active;
+    int nask, nbid, ask_room, bid_room, active_room;
     sim_ps now;
+    bool even;   /* links and ways out have one rate */
+    bool spares; /* no look at a router without need (router_gather) */
+    struct gather *gather; /* one event for all of an instant; NULL: one for each router */
 };
-
-/* router_later, router_sooner: of two times the later, the sooner one. */
-static inline sim_ps router_later(sim_ps a, sim_ps b) { return a > b ? a : b; }
-static inline sim_ps router_sooner(sim_ps a, sim_ps b) { return a < b ? a : b; }
 
 /* router_lanes_make: the lanes behind port p, at their first use (router_lanes). */
 struct lane *router_lanes_make(struct routers *g, int p);
-
-/* router_wake: see that router r is looked at, at time `at` or earlier. */
-void router_wake(struct routers *g, int r, sim_ps at);
 
 /* router_route: the way on of v's front; what it asks for from when on. */
 void router_route(struct routers *g, struct lane *v);
@@ -140,18 +142,22 @@ void router_own(struct routers *g, struct lane *v, struct lane *out);
 /* router_send: the front of v sends what moves at once; its channel and the switch are its own. */
 void router_send(struct routers *g, struct lane *v, sim_ps now);
 
-/* router_look: an event of router `argument`. */
+/* router_look_at: if router r is due: channels to heads, then the switch to flits. router_look: an
+ * event of router `argument`. */
+void router_look_at(struct routers *g, int r, sim_ps now);
 void router_look(void *subject, uint64_t argument, sim_ps now);
 
-/* router_allocate: an event of router r: channels to heads, then the switch to flits. Returns when
- * it is worth looking again. */
-sim_ps router_allocate(struct routers *g, int r, sim_ps now);
+/* router_post: an event of router r at `at` (routers.post). */
+void router_post(struct routers *g, int r, sim_ps at);
 
 /* router_used: flits that link was given and whose credits are not back at g->now. */
 int64_t router_used(const void *of, int link);
 
-/* router_source: an event of node's way into the network. */
-void router_source(struct routers *g, int node, sim_ps now);
+/* router_source_look: an event of node's way into the network. */
+void router_source_look(struct routers *g, int node, sim_ps now);
+
+/* router_gather: net_gather. */
+bool router_gather(struct net *n);
 
 /* router_leg: lane v of port p becomes w's: a leg at the end of its FIFO. */
 struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v);

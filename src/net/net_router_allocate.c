@@ -6,7 +6,19 @@
  * only after the first iteration. BookSim's router makes one iteration, whatever its option
  * alloc_iters says. A head bids for the switch in the same instant in which it asks for a channel,
  * and its turn is wasted if it gets none (speculation). */
+#include "net/net_router_gather.h"
 #include "net/net_router_lane.h"
+
+/* A FIFO's request for a channel, and its bid for the way through the switch. */
+struct ask {
+    struct lane *in, *out;
+    int priority;
+};
+struct bid {
+    struct lane *lane;
+    struct port *in, *out;
+    bool spec; /* its channel is still being asked for */
+};
 
 /* The place of a number after `turn`, in unsigned arithmetic that wraps. */
 static inline uint32_t after(uint32_t number, uint32_t turn) { return number - turn; }
@@ -19,6 +31,12 @@ static inline uint32_t input_number(const struct routers *g, const struct lane *
 static inline uint32_t output_number(const struct routers *g, const struct lane *v)
 {
     return g->port[v->port].out * (uint32_t)g->fabric.nchannel + (uint32_t)v->channel;
+}
+
+/* The channel after v's, round. */
+static inline int next_channel(const struct routers *g, const struct lane *v)
+{
+    return v->channel + 1 < g->fabric.nchannel ? v->channel + 1 : 0;
 }
 
 /* ---- channels ---- */
@@ -155,7 +173,7 @@ static bool bid_add(struct routers *g, struct lane *v, struct port *out, bool sp
 /* When the way through the switch is free at both ends. */
 static sim_ps switch_free(const struct routers *g, const struct lane *v, int out)
 {
-    return router_later(g->port[v->port].passed, g->fabric.resource[out].free);
+    return router_later(g->port[v->port].passed, g->port[out].free);
 }
 
 /* From when on a FIFO that has its channel has a flit, a credit, and a free way. */
@@ -163,20 +181,17 @@ static sim_ps sends_from(struct routers *g, struct lane *v, sim_ps now)
 {
     const struct leg *to = v->front->ahead;
     if (v->out >= v->in) return SIM_NEVER;
-    const sim_ps at = router_later(v->come[v->out & g->ring], switch_free(g, v, to->port));
+    const sim_ps at = router_later(v->stay[v->out & g->ring].come, switch_free(g, v, to->port));
     struct lane *out = &g->port[to->port].lane[to->channel];
     if (net_is_ejection(g->fabric.net, to->port)) return at;
     return router_later(at, router_room(g, out, router_unit(g, to->worm), now));
 }
 
-/* Then it bids. */
+/* Then it bids; SIM_NEVER unless it will have to come back. */
 static sim_ps bid_sending(struct routers *g, struct lane *v, sim_ps now)
 {
-    const struct leg *to = v->front->ahead;
-    const sim_ps at = sends_from(g, v, now);
-    if (at <= now && !bid_add(g, v, &g->port[to->port], false))
-        return ps_later(now, g->port[to->port].flit);
-    return at;
+    struct port *out = &g->port[v->front->ahead->port];
+    return bid_add(g, v, out, false) ? SIM_NEVER : ps_later(now, out->flit);
 }
 
 /* Whether one of the channels of an option is free and has a credit. */
@@ -263,22 +278,17 @@ static void switch_allocate(struct routers *g)
 
 /* ---- a look ---- */
 
-/* Requests of all FIFOs that have a front. */
-static sim_ps requests(struct routers *g, int r, sim_ps now)
+/* Requests of the lanes that can do something now. */
+static sim_ps requests(struct routers *g, struct lane *const *active, int n, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
-    for (struct lane *v = g->router[r].busy; v; v = v->busy) {
-        if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
+    for (int k = 0; k < n; k++) {
+        struct lane *v = active[k];
         if (v->state == LANE_SENDING) {
-            const sim_ps at = bid_sending(g, v, now);
-            if (at > now) again = router_sooner(again, at);
+            again = router_sooner(again, bid_sending(g, v, now));
             continue;
         }
         v->match = NULL;
-        if (v->due > now) {
-            again = router_sooner(again, v->due);
-            continue;
-        }
         for (int i = 0; i == 0 || i < v->noption; i++) {
             const struct route_option *o = v->noption > 0 ? &v->option[i] : NULL;
             again = router_sooner(again, ask_option(g, v, o, now));
@@ -304,7 +314,7 @@ static bool winner_sends(struct routers *g, const struct bid *b, sim_ps now)
 {
     struct lane *v = b->lane;
     if (b->spec && v->bars) return false;
-    b->in->turn = (v->channel + 1) % g->fabric.nchannel;
+    b->in->turn = next_channel(g, v);
     if (v->state != LANE_SENDING) return false;
     const struct leg *to = v->front->ahead;
     if (&g->port[to->port] != b->out) return false;
@@ -345,86 +355,120 @@ static struct lane *channel_alone(struct routers *g, struct lane *v, const struc
     return best;
 }
 
-/* What an allocation comes to when lane v alone asks or sends: it gets what it wants, and turns
- * move on. The same as router_allocate, without lists. */
-static sim_ps allocate_alone(struct routers *g, struct lane *v, sim_ps now)
+/* What an allocation comes to when the head of v alone asks: it gets what it wants, and turns move
+ * on. The same as allocate_together, without lists. */
+static sim_ps ask_alone(struct routers *g, struct lane *v, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
     struct port *in = &g->port[v->port];
-    bool bids = true;
-    if (v->state == LANE_ASKING) {
-        const struct route_option *o = v->noption > 0 ? v->option : NULL;
-        struct port *p = &g->port[router_out(g, v, o)];
-        struct lane *out = channel_alone(g, v, o, now, &again);
-        const sim_ps flit = ps_later(now, p->flit);
-        /* Its bid at the switch does not wait for the channel. */
-        bids = eligible(g, v, o, now);
-        const sim_ps at = switch_free(g, v, (int)(p - g->port));
-        if (bids && at > now) again = router_sooner(again, at);
-        bids = bids && at <= now;
-        /* The one offer that it accepts moves both turns on, as in a first round. */
-        if (out) {
-            out->grant = input_number(g, v) + 1;
-            v->accept = output_number(g, out) + 1;
-            v->match = out;
-            router_own(g, v, out);
-        }
-        /* So does the switch, even if there is no channel to use it for. */
-        if (bids) {
-            p->grant = in->in + 1;
-            in->accept = p->out + 1;
-            in->turn = (v->channel + 1) % g->fabric.nchannel;
-        }
-        if (!out) return bids ? router_sooner(again, flit) : again;
-        if (!bids) return router_sooner(again, flit);
-    } else {
-        const sim_ps at = sends_from(g, v, now);
-        if (at > now) return at;
+    const struct route_option *o = v->noption > 0 ? v->option : NULL;
+    struct port *p = &g->port[router_out(g, v, o)];
+    struct lane *out = channel_alone(g, v, o, now, &again);
+    const sim_ps flit = ps_later(now, p->flit), at = router_later(in->passed, p->free);
+    /* Its bid at the switch does not wait for the channel. */
+    bool bids = eligible(g, v, o, now);
+    if (bids && at > now) again = router_sooner(again, at);
+    bids = bids && at <= now;
+    /* The one offer that it accepts moves both turns on, as in a first round. */
+    if (out) {
+        out->grant = input_number(g, v) + 1;
+        v->accept = output_number(g, out) + 1;
+        v->match = out;
+        router_own(g, v, out);
     }
+    /* So does the switch, even if there is no channel to use it for. */
+    if (bids) {
+        p->grant = in->in + 1;
+        in->accept = p->out + 1;
+        in->turn = next_channel(g, v);
+    }
+    if (!out) return bids ? router_sooner(again, flit) : again;
     /* It has a channel and the switch: a flit goes if its buffer has room. */
-    const struct bid b = {v, in, &g->port[v->front->ahead->port], false};
-    b.out->grant = in->in + 1;
-    in->accept = b.out->out + 1;
-    if (!winner_sends(g, &b, now)) again = router_sooner(again, ps_later(now, b.out->flit));
+    if (!bids || (o && router_room(g, out, router_unit(g, v->front->worm), now) > now))
+        return router_sooner(again, flit);
+    router_send(g, v, now);
     return again;
 }
 
-enum { MOST_APART = 6 };
-
-/* The lanes of router r whose time has come, into lane[MOST_APART], if none of them is in another's
- * way; else -1. *others: when the time of the others comes. */
-static int lanes_apart(struct routers *g, int r, sim_ps now, struct lane **lane, sim_ps *others)
+/* When the front of v alone sends: it has a flit, a credit and the way. */
+static void send_alone(struct routers *g, struct lane *v, sim_ps now)
 {
-    int n = 0, out[MOST_APART];
+    struct port *in = &g->port[v->port], *p = &g->port[v->front->ahead->port];
+    p->grant = in->in + 1;
+    in->accept = p->out + 1;
+    in->turn = next_channel(g, v);
+    router_send(g, v, now);
+}
+
+/* ---- a look ---- */
+
+/* Room for one more active lane: there are never more than lanes. */
+static void active_room(struct routers *g, int n)
+{
+    if (n < g->active_room) return;
+    const int room = 2 * g->active_room + 64;
+    struct lane **more = TAKE(g->fabric.net->arena, room, struct lane *);
+    for (int i = 0; i < n; i++) more[i] = g->active[i];
+    g->active = more;
+    g->active_room = room;
+}
+
+/* The lanes of router r that can do something now into g->active; returns how many. *again: when
+ * others may. Loads are looked at by all of an instant together, before anything moves. */
+static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
+{
+    int n = 0;
     for (struct lane *v = g->router[r].busy; v; v = v->busy) {
-        if (v->due > now) {
-            *others = router_sooner(*others, v->due);
+        if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
+        const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
+        if (at > now) {
+            *again = router_sooner(*again, at);
             continue;
         }
-        /* Loads must be looked at by all of an instant together, before anything moves. */
-        if (n == MOST_APART || v->state == LANE_ROUTING) return -1;
-        if (v->state == LANE_ASKING && (v->noption > 1 || !g->single)) return -1;
-        out[n] = v->state == LANE_SENDING ? v->front->ahead->port
-                                          : router_out(g, v, v->noption > 0 ? v->option : NULL);
-        /* The same way out, or the same input of the switch: allocation decides. */
-        for (int i = 0; i < n; i++)
-            if (out[i] == out[n] || lane[i]->port == v->port) return -1;
-        lane[n++] = v;
+        active_room(g, n);
+        g->active[n++] = v;
     }
     return n;
 }
 
-sim_ps router_allocate(struct routers *g, int r, sim_ps now)
+/* Those whose time has come, whether they can do something or not; -1: there are loads to be looked
+ * at. */
+static int due_find(struct routers *g, int r, sim_ps now)
 {
-    g->now = now;
-    struct lane *lane[MOST_APART];
-    sim_ps others = SIM_NEVER;
-    const int n = lanes_apart(g, r, now, lane, &others);
-    /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
-    for (int i = 0; i < n; i++) others = router_sooner(others, allocate_alone(g, lane[i], now));
-    if (n >= 0) return others;
+    int n = 0;
+    for (struct lane *v = g->router[r].busy; v; v = v->busy) {
+        if (v->due > now) continue;
+        if (v->state == LANE_ROUTING) return -1;
+        active_room(g, n);
+        g->active[n++] = v;
+    }
+    return n;
+}
+
+enum { MOST_APART = 6 };
+
+/* Whether none of the first n of g->active is in another's way. */
+static bool are_apart(const struct routers *g, int n)
+{
+    int out[MOST_APART];
+    if (n <= 0 || n > MOST_APART) return n == 0;
+    for (int k = 0; k < n; k++) {
+        const struct lane *v = g->active[k];
+        if (v->state == LANE_ASKING && (v->noption > 1 || !g->single)) return false;
+        out[k] = v->state == LANE_SENDING ? v->front->ahead->port
+                                          : router_out(g, v, v->noption > 0 ? v->option : NULL);
+        /* The same way out, or the same input of the switch: allocation decides. */
+        for (int i = 0; i < k; i++)
+            if (out[i] == out[k] || g->active[i]->port == v->port) return false;
+    }
+    return true;
+}
+
+/* Channels to heads, the switch to flits. */
+static sim_ps allocate_together(struct routers *g, int n, sim_ps now)
+{
     g->nask = g->nbid = 0;
-    sim_ps again = requests(g, r, now);
+    sim_ps again = requests(g, g->active, n, now);
     channels_allocate(g);
     switch_allocate(g);
     channels_take(g);
@@ -441,14 +485,37 @@ sim_ps router_allocate(struct routers *g, int r, sim_ps now)
     return again;
 }
 
+static sim_ps router_allocate(struct routers *g, int r, sim_ps now)
+{
+    sim_ps again = SIM_NEVER;
+    g->now = now;
+    /* Events of its own come in the order in which they are asked for: as ever. */
+    const bool meet = !g->gather && !are_apart(g, due_find(g, r, now));
+    const int n = active_find(g, r, now, &again);
+    if (meet || !are_apart(g, n)) return router_sooner(again, allocate_together(g, n, now));
+    /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
+    for (int k = 0; k < n; k++) {
+        struct lane *v = g->active[k];
+        if (v->state == LANE_SENDING) send_alone(g, v, now);
+        else again = router_sooner(again, ask_alone(g, v, now));
+    }
+    return again;
+}
+
+void router_look_at(struct routers *g, int r, sim_ps now)
+{
+    struct router *o = &g->router[r];
+    if (o->wake != now + 1) return; /* an earlier look did it */
+    o->wake = 0;
+    const sim_ps again = router_allocate(g, r, now);
+    if (again != SIM_NEVER) router_wake(g, r, again);
+}
+
 void router_look(void *subject, uint64_t argument, sim_ps now)
 {
     struct routers *g = subject;
     struct router *o = &g->router[argument];
     for (int i = 0; i < ROUTER_POSTED; i++)
         if (o->posted[i] == now + 1) o->posted[i] = 0;
-    if (o->wake != now + 1) return; /* another event came before and did it */
-    o->wake = 0;
-    const sim_ps again = router_allocate(g, (int)argument, now);
-    if (again != SIM_NEVER) router_wake(g, (int)argument, again);
+    router_look_at(g, (int)argument, now);
 }

@@ -5,6 +5,10 @@
 
 #include "net/net_router.h"
 
+/* router_later, router_sooner: of two times the later, the sooner one. */
+static inline sim_ps router_later(sim_ps a, sim_ps b) { return a > b ? a : b; }
+static inline sim_ps router_sooner(sim_ps a, sim_ps b) { return a < b ? a : b; }
+
 /* router_lanes: the lanes behind port p, made at the first use. */
 static inline struct lane *router_lanes(struct routers *g, int p)
 {
@@ -14,21 +18,22 @@ static inline struct lane *router_lanes(struct routers *g, int p)
 /* router_room: from when on (>= now) `flits` flits may enter v, one after the other; SIM_NEVER:
  * when that depends on something yet to come, whose event will wake the router.
  *
- * Flits follow each other at the rate of the port, so that the first and the last of them decide
- * where those ahead left at one rate; checked one by one, as rates may differ. */
+ * Flits follow each other at the rate of the port, so that the last of them decides where those
+ * ahead left at one rate; checked one by one where rates differ. */
 static inline sim_ps router_room(const struct routers *g, struct lane *v, int32_t flits, sim_ps now)
 {
     const struct fabric *f = &g->fabric;
-    if (flits > f->buffer - (v->in - v->out)) {
+    const int64_t last = v->in + flits - 1 - f->buffer;
+    if (last >= v->out) {
         v->starved = true;
         return SIM_NEVER;
     }
-    if (v->in + flits <= f->buffer) return now;
+    if (last < 0) return now;
     const struct port *p = &g->port[v->port];
     const sim_ps late = f->net->credit + p->wire;
-    for (int32_t j = 0; j < flits; j++) {
+    for (int32_t j = g->even ? flits - 1 : 0; j < flits; j++) {
         const int64_t n = v->in + j - f->buffer;
-        if (n >= 0) now = router_later(now, v->go[n & g->ring] + late - j * p->flit);
+        if (n >= 0) now = router_later(now, v->stay[n & g->ring].go + late - j * p->flit);
     }
     return now;
 }

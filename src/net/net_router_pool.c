@@ -8,16 +8,14 @@ struct lane *router_lanes_make(struct routers *g, int p)
     const struct net *n = g->fabric.net;
     const int count = g->fabric.nchannel;
     /* The sink keeps nothing. */
-    const int64_t places = net_is_ejection(n, p) ? 0 : 2 * (g->ring + 1);
+    const int64_t places = net_is_ejection(n, p) ? 0 : g->ring + 1;
     o->lane = TAKE(n->arena, count, struct lane);
-    sim_ps *ring =
-        places ? TAKE(n->arena, size_product((size_t)count, (size_t)places), sim_ps) : NULL;
+    struct stay *ring =
+        places ? TAKE(n->arena, size_product((size_t)count, (size_t)places), struct stay) : NULL;
     for (int i = 0; i < count; i++) {
         o->lane[i].port = p;
-        o->lane[i].channel = i;
-        if (!ring) continue;
-        o->lane[i].come = ring + i * places;
-        o->lane[i].go = o->lane[i].come + places / 2;
+        o->lane[i].channel = (int16_t)i;
+        if (ring) o->lane[i].stay = ring + i * places;
     }
     return o->lane;
 }

@@ -1,6 +1,7 @@
 /* net_router_source.c - packets from their nodes into the first lane, and the levels themselves. */
 #include <string.h>
 
+#include "net/net_router_gather.h"
 #include "net/net_router_lane.h"
 
 /* ---- sources ---- */
@@ -42,7 +43,7 @@ static void source_flits(struct routers *g, int node, sim_ps now)
         const sim_ps there = at + f->net->tau - f->net->setup;
         if (head) l->first = at;
         if (head && l->worm->index == 0) m->m->injected = at;
-        for (int32_t j = 0; j < unit; j++) v->come[v->in++ & g->ring] = there + j * flit;
+        for (int32_t j = 0; j < unit; j++) v->stay[v->in++ & g->ring].come = there + j * flit;
         l->sent += unit;
         l->tail = at + (unit - 1) * flit;
         o->free = ps_later(l->tail, flit);
@@ -91,7 +92,7 @@ static sim_ps source_begin(struct routers *g, int node, sim_ps now)
     return SIM_NEVER;
 }
 
-void router_source(struct routers *g, int node, sim_ps now)
+static void router_source(struct routers *g, int node, sim_ps now)
 {
     struct fabric *f = &g->fabric;
     g->now = now;
@@ -104,14 +105,18 @@ void router_source(struct routers *g, int node, sim_ps now)
     if (again != SIM_NEVER) packet_wake(f, node, router_later(again, now + 1));
 }
 
-static void source_look(void *subject, uint64_t argument, sim_ps now)
+void router_source_look(struct routers *g, int node, sim_ps now)
 {
-    struct routers *g = subject;
-    struct resource *o = &g->fabric.resource[argument];
+    struct resource *o = &g->fabric.resource[node];
     if (o->wake != now + 1) return;
     o->wake = 0;
-    if (o->free > now) packet_wake(&g->fabric, (int)argument, o->free);
-    else router_source(g, (int)argument, now);
+    if (o->free > now) packet_wake(&g->fabric, node, o->free);
+    else router_source(g, node, now);
+}
+
+static void source_look(void *subject, uint64_t argument, sim_ps now)
+{
+    router_source_look(subject, (int)argument, now);
 }
 
 /* ---- the levels ---- */
@@ -141,6 +146,15 @@ static void ports_make(struct routers *g)
     }
 }
 
+/* Others' traffic, as packet_occupied. */
+static void router_occupied(void *subject, uint64_t argument, sim_ps now)
+{
+    struct routers *g = subject;
+    struct port *p = &g->port[argument];
+    p->free = router_later(p->free, now) + g->fabric.debt[argument];
+    g->fabric.debt[argument] = 0;
+}
+
 static struct routers *routers_create(struct net *n, bool whole, struct err *e)
 {
     struct routers *g =
@@ -150,6 +164,7 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     /* What differs between the levels, and between this program's rules and BookSim's. */
     g->routing = n->routing;
     g->look = router_look;
+    g->post = router_post;
     g->whole = whole;
     /* This program's own adaptive rule says which way is best by priorities alone. */
     g->priority = n->machine->network.vc_allocator == ALLOCATOR_SELECT ||
@@ -157,9 +172,10 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     g->strict = n->routing->rule == ROUTING_BOOKSIM_MIN_ADAPT;
     g->iterations = n->machine->network.allocator_iterations;
     g->single = g->iterations == 1 || !g->priority;
+    g->even = !n->link_rate && n->ejection.flit == n->link.flit;
     /* A buffer, and what may be known to come. */
-    while (g->ring < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
-    g->fabric.occupied = packet_occupied;
+    while (g->ring + 1 < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
+    g->fabric.occupied = router_occupied;
     g->port = TAKE(n->arena, n->nresource, struct port);
     g->router = TAKE(n->arena, n->topology->nrouter, struct router);
     g->sending = TAKE(n->arena, n->nnode, struct leg *);

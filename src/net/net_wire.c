@@ -94,8 +94,6 @@ sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate
         *slow = net_slowest(n, m, &nhop);
         return (nhop + 1) * n->tau;
     }
-    struct route p = net_route_begin(n, m);
-    sim_ps cables = 0;
     *slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
     /* Where all links are alike only their number counts. */
     if (n->routing->minimal && !n->link_rate && !n->wire) {
@@ -103,6 +101,8 @@ sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate
         if (nhop > 0) *slow = net_rate_slower(*slow, n->link);
         return (nhop + 1) * n->tau;
     }
+    struct route p = net_route_begin(n, m);
+    sim_ps cables = 0;
     for (; routing_empty(n->routing, &p, &link); nhop++) {
         *slow = net_rate_slower(*slow, n->link_rate ? n->link_rate[link] : n->link);
         if (n->wire) cables += n->wire[link];

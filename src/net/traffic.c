@@ -6,36 +6,32 @@
  * reference simulators, so that levels can be compared message by message (docs/network.md 4). */
 #include "net/traffic.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/check.h"
+#include "base/picoseconds.h"
+
+/* A message under way, or one that waits for the next to start. */
+struct under_way {
+    struct net_message message; /* first: what a level gives back */
+    struct under_way *next;
+};
 
 struct replay {
     const struct traffic *q;
     struct net *net;
     struct sim *sim;
-    struct net_message *message; /* (nmessage) */
-    sim_ps *ready;               /* (nmessage) latest of time and arrivals + delay so far */
-    int *waits;                  /* (nmessage) dependencies that have not arrived */
-    int *out_first, *out;        /* who depends on m */
-    int *initial;                /* messages without dependencies by (time, number) */
+    struct arena *arena;
+    struct under_way *free; /* records that are not in use */
+    sim_ps *ready;          /* (nmessage) latest of time and arrivals + delay so far */
+    int *waits;             /* (nmessage) dependencies that have not arrived */
+    int *out_first, *out;   /* who depends on m */
+    int *initial;           /* messages without dependencies by (time, number) */
     int ninitial, next_initial;
+    bool ahead;   /* arrivals are told before their time (net_gather) */
+    bool gathers; /* messages of one instant start in one event */
     struct traffic_result *result;
 };
-
-struct start {
-    sim_ps time;
-    int message;
-};
-
-/* A total order: qsort is not stable. */
-static int start_order(const void *a, const void *b)
-{
-    const struct start *p = a, *q = b;
-    if (p->time != q->time) return p->time < q->time ? -1 : 1;
-    return p->message < q->message ? -1 : 1;
-}
 
 static void start_message(void *subject, uint64_t argument, sim_ps now);
 
@@ -44,15 +40,41 @@ static void start_at(struct replay *r, int m)
     sim_at(r->sim, r->ready[m], NET_LANE_START, (uint64_t)m, start_message, r, (uint64_t)m);
 }
 
+/* Few messages are under way at a time: their records stay in the cache, where those of all would
+ * not. */
+static void send(struct replay *r, int m, sim_ps now)
+{
+    enum { CHUNK = 64 };
+    if (!r->free) {
+        struct under_way *chunk = TAKE(r->arena, CHUNK, struct under_way);
+        for (int i = 0; i < CHUNK; i++) {
+            chunk[i].next = r->free;
+            r->free = &chunk[i];
+        }
+    }
+    struct under_way *w = r->free;
+    r->free = w->next;
+    w->message = (struct net_message){
+        .src = r->q->src[m], .dst = r->q->dst[m], .bytes = r->q->bytes[m], .id = m, .ready = now};
+    net_send(r->net, &w->message);
+}
+
 static void start_message(void *subject, uint64_t argument, sim_ps now)
 {
     struct replay *r = subject;
     int m = (int)argument;
-    /* This start releases the next one in the list: one event pending at a time. */
-    if (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m)
-        start_at(r, r->initial[r->next_initial++]);
-    r->message[m].ready = now;
-    net_send(r->net, &r->message[m]);
+    /* This start releases the next one in the list: one event pending at a time. Those of the same
+     * instant need none, unless one that waited for others may come between them. */
+    while (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m) {
+        const int next = r->initial[r->next_initial++];
+        if (!r->gathers || r->ready[next] != now) {
+            start_at(r, next);
+            break;
+        }
+        send(r, m, now);
+        m = next;
+    }
+    send(r, m, now);
 }
 
 static void message_arrived(void *context, struct net_message *msg)
@@ -60,6 +82,12 @@ static void message_arrived(void *context, struct net_message *msg)
     struct replay *r = context;
     struct traffic_result *out = r->result;
     int m = (int)msg->id;
+    struct under_way *w = (struct under_way *)(void *)msg;
+    w->next = r->free;
+    r->free = w;
+    /* Told ahead of time what is not simulated. */
+    if (r->ahead && ((r->q->stop > 0 && msg->arrival > r->q->stop) || msg->arrival > PS_LAST))
+        return;
     out->arrived++;
     if (msg->arrival > out->makespan) out->makespan = msg->arrival;
     if (out->arrival) out->arrival[m] = msg->arrival;
@@ -115,26 +143,42 @@ static void dependents_make(struct replay *r, struct arena *a)
     }
 }
 
+/* list[n] by `time`, of equal times in the order in which it is; swap[n] is scratch. Digit by
+ * digit, the lowest first: linear in n, where comparing would cost as much as playing the message.
+ * Returns the one of both that has the result. */
+static int *sort_by_time(int *list, int *swap, int n, const sim_ps *time)
+{
+    enum { BITS = 11, DIGITS = 1 << BITS };
+    sim_ps all = 0;
+    for (int i = 0; i < n; i++) all |= time[list[i]];
+    for (int shift = 0; shift < 63 && all >> shift; shift += BITS) {
+        int place[DIGITS + 1] = {0};
+        for (int i = 0; i < n; i++) place[(time[list[i]] >> shift & (DIGITS - 1)) + 1]++;
+        for (int d = 0; d < DIGITS; d++) place[d + 1] += place[d];
+        for (int i = 0; i < n; i++) swap[place[time[list[i]] >> shift & (DIGITS - 1)]++] = list[i];
+        int *sorted = swap;
+        swap = list;
+        list = sorted;
+    }
+    return list;
+}
+
 static void initial_make(struct replay *r, struct arena *a)
 {
     int n = r->q->nmessage;
-    struct start *s = TAKE(a, n + 1, struct start);
+    int *list = TAKE(a, n + 1, int), *swap = TAKE(a, n + 1, int);
     for (int m = 0; m < n; m++)
-        if (r->waits[m] == 0) s[r->ninitial++] = (struct start){r->q->time[m], m};
-    qsort(s, (size_t)r->ninitial, sizeof *s, start_order);
-    r->initial = TAKE(a, r->ninitial + 1, int);
-    for (int i = 0; i < r->ninitial; i++) r->initial[i] = s[i].message;
+        if (r->waits[m] == 0) list[r->ninitial++] = m;
+    r->initial = sort_by_time(list, swap, r->ninitial, r->q->time);
 }
 
 static void replay_make(struct replay *r, struct arena *a)
 {
     const struct traffic *q = r->q;
     int n = q->nmessage;
-    r->message = TAKE(a, n + 1, struct net_message);
+    r->arena = a;
     r->ready = TAKE(a, n + 1, sim_ps);
     for (int m = 0; m < n; m++) {
-        r->message[m] =
-            (struct net_message){.src = q->src[m], .dst = q->dst[m], .bytes = q->bytes[m], .id = m};
         r->ready[m] = q->time[m];
         /* What never arrives keeps SIM_NEVER. */
         if (r->result->arrival) r->result->arrival[m] = SIM_NEVER;
@@ -189,6 +233,9 @@ bool traffic_run(const struct traffic *q, const struct machine_spec *m, const st
     r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
     if (r.net && !all_taken(r.net, q, e)) r.net = NULL;
     if (r.net) {
+        /* Messages that wait for others start in the order of events. */
+        r.ahead = !q->singly && net_gather(r.net);
+        r.gathers = r.ahead && !q->dep_first;
         replay_make(&r, a);
         replay_run(&r, a);
     }

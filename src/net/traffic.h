@@ -20,6 +20,7 @@ struct traffic {
     int *dep_first;
     int *dep;       /* numbers of other messages */
     sim_ps stop;    /* nothing that happens later is simulated [ps]; 0: all is */
+    bool singly;    /* an event for everything, also where one for all of an instant would do */
 };
 
 /* What a replay tells; the arrays are the caller's, (nmessage) or NULL where not wanted. */

@@ -100,7 +100,7 @@ static void draw_messages(struct sample *s, struct random *r)
                           TAKE(s->arena, n, sim_ps),
                           TAKE(s->arena, n + 1, int),
                           TAKE(s->arena, 2 * n, int),
-                          0};
+                          0, false};
     for (int i = 0; i < n; i++) {
         q->src[i] = (int)random_below(r, (uint64_t)nnode);
         q->dst[i] =

@@ -86,7 +86,7 @@ static void levels_agree_in_an_empty_network(void **state)
                 bytes[m] = 16 * (1 + m % 6);
                 time[m] = (sim_ps)m * 1000000;
             }
-            const struct traffic q = {MESSAGES, src, dst, bytes, time, NULL, NULL, NULL, 0};
+            const struct traffic q = {MESSAGES, src, dst, bytes, time, NULL, NULL, NULL, 0, false};
             for (int l = 0; l < LEVELS; l++) {
                 struct machine_spec m =
                     machine(&network[i], (enum routing_rule)rule, (enum network_level)l, CHANNELS);
@@ -118,7 +118,7 @@ static void cables_add_their_latency(void **state)
     int src = 0, dst = 4 + 2;
     int64_t bytes = 3 * 16;
     sim_ps time = 0, arrival;
-    struct traffic q = {1, &src, &dst, &bytes, &time, NULL, NULL, NULL, 0};
+    struct traffic q = {1, &src, &dst, &bytes, &time, NULL, NULL, NULL, 0, false};
     for (int l = 0; l < LEVELS; l++) {
         struct machine_spec m =
             machine(&network[0], ROUTING_DETERMINISTIC, (enum network_level)l, 1);
@@ -203,7 +203,7 @@ static void a_deadlock_is_named(void **state)
         dst[i] = (i + 2) % 5;
         bytes[i] = 18 * 16;
     }
-    const struct traffic q = {5, src, dst, bytes, time, NULL, NULL, NULL, 0};
+    const struct traffic q = {5, src, dst, bytes, time, NULL, NULL, NULL, 0, false};
     struct machine_spec m = machine(&ring, ROUTING_BOOKSIM_MIN, LEVEL_FLIT, 1);
     struct traffic_result r;
     struct err e;
@@ -276,7 +276,7 @@ static void what_cannot_run_is_refused(void **state)
     int node = 0;
     int64_t bytes = 16;
     sim_ps time = 0, arrival;
-    const struct traffic q = {1, &node, &node, &bytes, &time, NULL, NULL, NULL, 0};
+    const struct traffic q = {1, &node, &node, &bytes, &time, NULL, NULL, NULL, 0, false};
     struct traffic_result r;
     struct err e;
     struct machine_spec m = machine(&network[1], ROUTING_VALIANT, LEVEL_FLIT, 3);

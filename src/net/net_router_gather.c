@@ -1,0 +1,161 @@
+/* net_router_gather.c - all routers and sources that are to be looked at in one instant, in one
+ * event.
+ *
+ * Routers of one clock have their events in the same instants: at a load of 0.1 some ten an
+ * instant, each of which would be queued, sorted and taken by itself. Here an instant is a slot of
+ * a wheel with a bit for each router and node, and the first bit posts the event. The bits are
+ * taken in the order in which single events would be dispatched: nodes, then routers, then those
+ * that are looked at again, each by number; so every time comes out the same.
+ *
+ * What lies beyond the wheel, or between the instants of its clock, waits as an event of its own.
+ */
+#include "net/net_router_gather.h"
+#include "net/net_router_lane.h"
+
+enum { MOST = 1 << 16 };
+
+/* Before what is looked at in an instant: what waited outside comes into its slot. */
+enum { LANE_ENTER = NET_LANE_ARBITRATE - 1, LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
+
+/* ---- sets ---- */
+
+static void set_make(struct gather_set *s, int n, struct arena *a)
+{
+    const int words = n / GATHER_WORD + 1;
+    s->nfull = words / GATHER_WORD + 1;
+    s->word = TAKE(a, words, uint64_t);
+    s->full = TAKE(a, s->nfull, uint64_t);
+}
+
+/* The lowest number out of the set; -1: it is empty. */
+static inline int set_take(struct gather_set *s)
+{
+    for (int k = 0; k < s->nfull; k++) {
+        if (!s->full[k]) continue;
+        const int w = k * GATHER_WORD + __builtin_ctzll(s->full[k]);
+        const int i = w * GATHER_WORD + __builtin_ctzll(s->word[w]);
+        s->word[w] &= s->word[w] - 1;
+        if (!s->word[w]) s->full[k] &= s->full[k] - 1;
+        return i;
+    }
+    return -1;
+}
+
+/* ---- looks ---- */
+
+static inline void look_source(struct routers *g, int node, sim_ps now)
+{
+    struct resource *o = &g->fabric.resource[node];
+    if (o->wake == now + 1) router_source_look(g, node, now);
+}
+
+/* Event: the slot `argument` has come. What is added meanwhile for this very instant is looked at,
+ * too. */
+static void look_all(void *subject, uint64_t argument, sim_ps now)
+{
+    struct routers *g = subject;
+    struct gather *q = g->gather;
+    struct gather_slot *s = &q->slot[argument];
+    q->base = now;
+    q->at = (unsigned)argument;
+    for (int i;;) {
+        if ((i = set_take(&s->source)) >= 0) look_source(g, i, now);
+        else if ((i = set_take(&s->router)) >= 0) router_look_at(g, i, now);
+        else if ((i = set_take(&q->again)) >= 0) router_look_at(g, i, now);
+        else break;
+    }
+    s->posted = false;
+    q->posted--;
+}
+
+/* ---- what is to come ---- */
+
+/* The slot of time `at`, whose event is posted; NULL: it has none. */
+static struct gather_slot *slot_of(struct routers *g, sim_ps at)
+{
+    struct gather *q = g->gather;
+    const struct net *n = g->fabric.net;
+    /* An empty wheel begins now. */
+    if (q->posted == 0) q->base = sim_now(n->sim);
+    const int k = gather_steps(q, at);
+    if (k < 0) return NULL;
+    const unsigned i = (q->at + (unsigned)k) % GATHER_SLOTS;
+    struct gather_slot *s = &q->slot[i];
+    if (s->posted) return s;
+    if (!s->source.word) {
+        set_make(&s->source, n->nnode, n->arena);
+        set_make(&s->router, n->topology->nrouter, n->arena);
+    }
+    s->posted = true;
+    q->posted++;
+    sim_at(n->sim, at, NET_LANE_ARBITRATE, 0, look_all, g, i);
+    return s;
+}
+
+static void alone_source(void *subject, uint64_t argument, sim_ps now)
+{
+    look_source(subject, (int)argument, now);
+}
+
+static void alone_router(void *subject, uint64_t argument, sim_ps now)
+{
+    router_look_at(subject, (int)argument, now);
+}
+
+/* Event: the time of something that had no slot has come. If it still has none, it is looked at by
+ * itself. argument: the number of a resource (of a node's port), then of routers. */
+static void enter(void *subject, uint64_t argument, sim_ps now)
+{
+    struct routers *g = subject;
+    const struct net *n = g->fabric.net;
+    const uint64_t resources = (uint64_t)n->nresource;
+    const bool source = argument < resources;
+    const int i = (int)(source ? argument : argument - resources);
+    if ((source ? g->fabric.resource[i].wake : g->router[i].wake) != now + 1) return;
+    struct gather_slot *s = slot_of(g, now);
+    if (s) gather_set_add(source ? &s->source : &s->router, i);
+    else
+        sim_at(n->sim, now, NET_LANE_ARBITRATE, argument, source ? alone_source : alone_router, g,
+               (uint64_t)i);
+}
+
+static void post_source(struct fabric *f, int node, sim_ps at)
+{
+    struct routers *g = (struct routers *)(void *)f;
+    struct gather_slot *s = slot_of(g, at);
+    struct sim *sim = f->net->sim;
+    if (s) gather_set_add(&s->source, node);
+    else if (at > sim_now(sim))
+        sim_at(sim, at, LANE_ENTER, (uint64_t)node, enter, g, (uint64_t)node);
+    else sim_at(sim, at, NET_LANE_ARBITRATE, (uint64_t)node, alone_source, g, (uint64_t)node);
+}
+
+/* Second look at a router at the same time: after all others. */
+static void post_gathered(struct routers *g, int r, sim_ps at)
+{
+    struct sim *sim = g->fabric.net->sim;
+    struct gather_slot *s = slot_of(g, at);
+    const uint64_t number = (uint64_t)g->fabric.net->nresource + (uint64_t)r;
+    const bool later = at > sim_now(sim);
+    if (s) gather_set_add(later ? &s->router : &g->gather->again, r);
+    else if (later) sim_at(sim, at, LANE_ENTER, number, enter, g, number);
+    else sim_at(sim, at, LANE_AGAIN, number, alone_router, g, (uint64_t)r);
+}
+
+/* Sets of all slots take a bit for each node and router: not for the largest networks. */
+bool router_gather(struct net *n)
+{
+    struct routers *g = n->state;
+    if (n->nnode > MOST || n->topology->nrouter > MOST || n->in_flight > 0) return false;
+    g->gather = TAKE(n->arena, 1, struct gather);
+    g->gather->unit = n->link.flit;
+    g->gather->per_unit = 1.0 / (double)n->link.flit;
+    set_make(&g->gather->again, n->topology->nrouter, n->arena);
+    g->fabric.wake = post_source;
+    g->post = post_gathered;
+    g->fabric.ahead = true;
+    /* At different rates who lost comes back too late for some turns, and where packets must fit,
+     * who finds no room does not know when to come back: there a look without need is none. */
+    g->spares = g->even && !n->routing->fits;
+    return true;
+}

@@ -1,0 +1,193 @@
+/* test_gather.c - one event for all of an instant gives the times of an event for everything:
+ * random networks, rules, routers, loads, sizes and times, every result bit for bit. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/random.h"
+#include "net/traffic.h"
+#include "study/netcheck_case.h"
+
+static int below(struct random *r, int n) { return (int)random_below(r, (uint64_t)n); }
+
+/* A small network of any family that routing rules know. */
+static struct topology_spec draw_network(struct random *r)
+{
+    struct topology_spec s = {.nodes_per_router = 1, .processors_per_node = 1, .tie = TIE_RANDOM};
+    switch (below(r, 7)) {
+    case 0:
+        s.family = TOPOLOGY_MESH;
+        s.ndim = 2;
+        s.dims[0] = 2 + below(r, 5);
+        s.dims[1] = 2 + below(r, 4);
+        break;
+    case 1:
+        s.family = TOPOLOGY_TORUS;
+        s.ndim = 2 + below(r, 2);
+        for (int d = 0; d < s.ndim; d++) s.dims[d] = 2 + below(r, 4);
+        break;
+    case 2:
+        s.family = TOPOLOGY_HYPERCUBE;
+        s.ndim = 1;
+        s.dims[0] = 2 + below(r, 3);
+        break;
+    case 3:
+        s.family = TOPOLOGY_HYPERX;
+        s.ndim = 2;
+        s.dims[0] = 2 + below(r, 3);
+        s.dims[1] = 2 + below(r, 3);
+        s.nodes_per_router = 1 + below(r, 4);
+        break;
+    case 4:
+        s.family = TOPOLOGY_FAT_TREE;
+        s.ndim = 2;
+        s.dims[0] = 2 + below(r, 2);
+        s.dims[1] = 2 + below(r, 2);
+        break;
+    case 5:
+        s.family = TOPOLOGY_DRAGONFLY;
+        s.ndim = 4;
+        s.dims[0] = 1 + below(r, 2);
+        s.dims[1] = 4;
+        s.dims[2] = 2;
+        break;
+    default:
+        s.family = TOPOLOGY_RANDOM_REGULAR;
+        s.ndim = 2;
+        s.dims[0] = 12;
+        s.dims[1] = 3;
+        s.seed = random_below(r, 99);
+    }
+    return s;
+}
+
+/* Cables of no length, of whole cycles, of other lengths; some longer than the wheel of instants.
+ */
+static void draw_cables(struct random *r, struct topology_spec *s)
+{
+    static const double length[] = {1e-9, 9e-9, 99e-9, 300e-9, 2.5e-9, 0.7e-9};
+    if (below(r, 4) == 0) s->dim_bandwidth[below(r, 2)] = below(r, 2) ? 8e9 : 5e9;
+    if (below(r, 2)) return;
+    for (int d = 0; d < s->ndim && d < 2; d++) s->dim_latency[d] = length[below(r, 6)];
+}
+
+static struct machine_spec draw_machine(struct random *r, const struct topology_spec *s)
+{
+    static const int buffer[] = {8, 16, 64, 256};
+    struct machine_spec m = netcheck_machine(s, 1 + below(r, 8), buffer[below(r, 4)],
+                                             below(r, 2) ? 4 : 0, 3 + below(r, 3));
+    m.network.routing = (enum routing_rule)below(r, ROUTING_RULES);
+    m.network.level = below(r, 2) ? LEVEL_FLIT : LEVEL_PACKET;
+    m.network.vc_allocator = below(r, 2) ? ALLOCATOR_ISLIP : ALLOCATOR_SELECT;
+    m.network.allocator_iterations = 1 + 2 * below(r, 2);
+    /* Credits and ends at once, so that much happens again at the same instant. */
+    if (below(r, 6) == 0) m.network.credit_latency = 0;
+    if (below(r, 6) == 0) m.network.end_latency = 0;
+    if (below(r, 6) == 0) m.network.hop_latency = 5.5e-9;
+    return m;
+}
+
+/* A list of messages; times on the cycle, or anywhere; some wait for others. */
+static void draw_list(struct random *r, int nnode, struct arena *a, struct traffic *q)
+{
+    const int n = 40 + below(r, 400), span = 1 << (4 + below(r, 12)),
+              cycle = below(r, 4) ? 1000 : 1;
+    const bool waits = below(r, 3) == 0;
+    const int longest = 1 + below(r, 20);
+    *q = (struct traffic){.nmessage = n,
+                          .src = TAKE(a, n, int),
+                          .dst = TAKE(a, n, int),
+                          .bytes = TAKE(a, n, int64_t),
+                          .time = TAKE(a, n, sim_ps),
+                          .delay = TAKE(a, n, sim_ps)};
+    if (waits) q->dep_first = TAKE(a, n + 1, int);
+    q->dep = TAKE(a, n, int);
+    int ndep = 0;
+    for (int m = 0; m < n; m++) {
+        q->src[m] = below(r, nnode);
+        q->dst[m] = below(r, nnode);
+        q->bytes[m] = 16 * below(r, longest + 1);
+        q->time[m] = (sim_ps)below(r, span) * 1000 / cycle * cycle + (cycle == 1 ? below(r, 7) : 0);
+        q->delay[m] = (sim_ps)below(r, 30) * 500;
+        if (!waits) continue;
+        q->dep_first[m] = ndep;
+        if (m > 0 && below(r, 2)) q->dep[ndep++] = below(r, m);
+        q->dep_first[m + 1] = ndep;
+    }
+    if (below(r, 4) == 0) q->stop = (sim_ps)span * 500;
+}
+
+/* What a replay tells, with arrays in a. */
+static bool play(const struct machine_spec *m, const struct traffic *q, bool singly,
+                 struct arena *a, struct traffic_result *r, struct err *e)
+{
+    struct traffic list = *q;
+    const struct topology *t = topology_create(&m->topology, a, e);
+    if (!t) return false;
+    list.singly = singly;
+    *r = (struct traffic_result){.arrival = TAKE(a, q->nmessage, sim_ps),
+                                 .injected = TAKE(a, q->nmessage, sim_ps),
+                                 .uncontended = TAKE(a, q->nmessage, sim_ps)};
+    return traffic_run(&list, m, t, a, true, r, e);
+}
+
+static void same(const struct traffic_result *x, const struct traffic_result *y, int n, int trial)
+{
+    for (int m = 0; m < n; m++)
+        if (x->arrival[m] != y->arrival[m] || x->uncontended[m] != y->uncontended[m])
+            fail_msg("trial %d, message %d of %d: %lld and %lld", trial, m, n,
+                     (long long)x->arrival[m], (long long)y->arrival[m]);
+    assert_memory_equal(x->arrival, y->arrival, (size_t)n * sizeof *x->arrival);
+    assert_memory_equal(x->uncontended, y->uncontended, (size_t)n * sizeof *x->arrival);
+    assert_int_equal(x->makespan, y->makespan);
+    assert_int_equal(x->arrived, y->arrived);
+    assert_int_equal(x->deadlock, y->deadlock);
+    assert_string_equal(x->text, y->text);
+    assert_int_equal(x->nlink, y->nlink);
+    assert_memory_equal(x->link, y->link, (size_t)x->nlink * sizeof *x->link);
+}
+
+static void gathered_and_single_events_give_the_same(void **state)
+{
+    (void)state;
+    enum { TRIALS = 800 };
+    struct random r = random_make(5, 6, 7);
+    int played = 0, fewer = 0, locked = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        struct arena *a = arena_create();
+        struct topology_spec s = draw_network(&r);
+        struct err e;
+        err_clear(&e);
+        draw_cables(&r, &s);
+        const struct machine_spec m = draw_machine(&r, &s);
+        const struct topology *t = topology_create(&m.topology, a, &e);
+        struct traffic q;
+        struct traffic_result x, y;
+        assert_non_null(t);
+        draw_list(&r, t->nnode, a, &q);
+        /* Rules for other families, buffers that are too small: the same refusal. */
+        if (play(&m, &q, true, a, &x, &e)) {
+            assert_true(play(&m, &q, false, a, &y, &e));
+            same(&x, &y, q.nmessage, trial);
+            played++;
+            fewer += y.events < x.events;
+            locked += x.deadlock;
+        }
+        arena_destroy(a);
+    }
+    print_message("%d lists played, %d with fewer events, %d to a deadlock\n", played, fewer,
+                  locked);
+    assert_true(played > TRIALS / 4 && fewer > played / 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gathered_and_single_events_give_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
