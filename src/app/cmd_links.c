@@ -14,7 +14,9 @@ static const char doc[] =
     "Example: mimdsim links mimdsim.db\n"
     "\vThe default RUN is the stored run with the longest waiting time. Link loads are recorded by "
     "scenarios with `record: {links: true}`. A port of a node has no router at one end: an "
-    "injection port leads into the network, an ejection port out of it.";
+    "injection port leads into the network, an ejection port out of it. Of a run in which several "
+    "jobs shared the machine, each link has a row for every job that used it, with its share of "
+    "the time in which the link was busy.";
 
 /* The run in which messages waited longest for links: the one that a user most likely asks
  * about. */
@@ -40,6 +42,38 @@ static const char links_sql[] =
     "l.queue_ps / 1e6 AS queue_us FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, "
     "place";
 
+/* The same, link by link, of all jobs that ran together in that run: every job's part of the time
+ * in which the link was busy. Those of one set in one combination, in which the names of a run and
+ * of those beside it are the same; a run of one program alone has no job. */
+static const char shares_sql[] =
+    "WITH member AS (SELECT r.id, r.rep, r.makespan_ps, s.value AS job_set, n.value AS job, "
+    "CAST(k.value AS INTEGER) AS number, b.value AS beside, "
+    "iif(b.value GLOB '[0-9]* jobs', b.value, (SELECT group_concat(value) FROM (SELECT value FROM "
+    "json_each('[\"' || replace(n.value || iif(b.value = '', '', ' + ' || b.value), ' + ', "
+    "'\",\"') || '\"]') ORDER BY value))) AS together FROM run r JOIN v_setting s "
+    "ON s.run_id = r.id AND s.key = 'job.set' JOIN v_setting n ON n.run_id = r.id AND n.key = "
+    "'job.name' JOIN v_setting k ON k.run_id = r.id AND k.key = 'job.number' JOIN v_setting b ON "
+    "b.run_id = r.id AND b.key = 'job.beside'), "
+    "all_jobs AS (SELECT m.* FROM member m JOIN member a ON a.id = CAST(?1 AS INTEGER) AND "
+    "a.job_set = m.job_set AND a.rep = m.rep AND a.together = m.together), "
+    "part AS MATERIALIZED (SELECT l.link, l.from_router, l.to_router, l.node, l.messages, "
+    "l.sent_bytes, l.busy_ps, l.queue_ps, l.from_router IS NULL OR l.to_router IS NULL AS port, "
+    "j.id, j.job, j.number, j.makespan_ps FROM link_load l JOIN all_jobs j ON j.id = l.run_id), "
+    "whole AS (SELECT link, port, sum(busy_ps) AS busy_ps, row_number() OVER (PARTITION BY port "
+    "ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, link) AS place FROM part GROUP BY link) "
+    "SELECT p.id AS run_id, CASE WHEN p.from_router IS NULL THEN 'injection' WHEN p.to_router IS "
+    "NULL THEN 'ejection' ELSE 'network' END AS kind, w.place, p.link, p.from_router, p.to_router, "
+    "p.node, p.job, p.messages, p.sent_bytes, p.busy_ps / 1e6 AS busy_us, round(100.0 * p.busy_ps "
+    "/ nullif(w.busy_ps, 0), 1) AS share_percent, round(100.0 * p.busy_ps / "
+    "nullif(p.makespan_ps, 0), 1) AS busy_percent, p.queue_ps / 1e6 AS queue_us FROM part p JOIN "
+    "whole w ON w.link = p.link WHERE w.place <= 10 AND p.messages > 0 ORDER BY w.port, w.place, "
+    "p.number";
+
+/* Whether others ran beside the run. */
+static const char beside_sql[] =
+    "SELECT 1 FROM v_setting WHERE run_id = CAST(?1 AS INTEGER) AND key = 'job.beside' AND value "
+    "NOT IN ('', 'background')";
+
 /* One value is enough. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -62,7 +96,11 @@ static bool print_links(const struct common *c, struct store *s, struct err *e)
     /* The query of the default gives the run's number, the other one only says that there are
      * rows. */
     const char *run = wanted ? wanted : found.s;
-    ok = ok && report_query(s, links_sql, 1, &run, c->json, stdout, e);
+    struct text beside = {0};
+    ok = ok && store_select(s, beside_sql, 1, &run, take_text, &beside, e);
+    ok = ok && report_query(s, beside.length > 0 ? shares_sql : links_sql, 1, &run, c->json, stdout,
+                            e);
+    text_free(&beside);
     text_free(&found);
     return ok;
 }

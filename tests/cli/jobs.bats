@@ -95,6 +95,28 @@ ok8all-to-all'
     works mimdsim check one.db --again 6
 }
 
+@test "links: of jobs that ran together, each one's share of every link" {
+    scenario "${two[@]}" '  - {name: third, kernel: barrier, ranks: 4}' 'combinations: [alone, pairs, all]' 'record: {links: true}'
+    works mimdsim run s.yaml -o s.db --quiet --set jobs.solver.placement=random --set jobs.swap.placement=random
+    beside() { sql s.db "SELECT n.run_id FROM v_setting n JOIN v_setting b USING (run_id) WHERE n.key = 'job.name' AND n.value = 'solver'
+                         AND b.key = 'job.beside' AND b.value = '$1'"; }
+    works mimdsim links s.db "$(beside swap)" --json
+    printf '%s' "$output" >l.json
+    # a link's shares make all of it; some links have both jobs, none the third
+    sql_is s.db "SELECT count(*) FROM (SELECT 1 FROM json_each(readfile('l.json')) GROUP BY value ->> 'link'
+                 HAVING abs(sum(value ->> 'share_percent') - 100) > 0.11)" 0
+    sql_is s.db "SELECT count(*) > 0 FROM (SELECT 1 FROM json_each(readfile('l.json')) GROUP BY value ->> 'link' HAVING count(*) = 2)" 1
+    sql_is s.db "SELECT group_concat(DISTINCT value ->> 'job'), count(DISTINCT value ->> 'run_id') FROM json_each(readfile('l.json'))" 'solver,swap|2'
+    # each row is what its own run recorded
+    sql_is s.db "SELECT count(*) = (SELECT count(*) FROM json_each(readfile('l.json'))) FROM json_each(readfile('l.json')) j JOIN link_load l
+                 ON l.run_id = j.value ->> 'run_id' AND l.link = j.value ->> 'link' AND l.messages = j.value ->> 'messages'
+                 AND abs(l.busy_ps / 1e6 - (j.value ->> 'busy_us')) < 1e-9" 1
+    works mimdsim links s.db "$(beside 'swap + third')"
+    stdout_says 'share_percent'
+    works mimdsim links s.db "$(beside '')"
+    [[ $output != *share_percent* ]]
+}
+
 @test "--set reaches one job, all jobs, and the sweep over what they share" {
     scenario "${two[@]}"
     works mimdsim run s.yaml -o s.db --quiet --set jobs.swap.kernel.message='1 KiB' --set jobs.swap.start='2 ms' \
