@@ -48,6 +48,8 @@ END
 "$MIMDSIM" run speedup-t3e -m my.yaml --set n=16,32,64,128 --set level=link -o figures.db --quiet >/dev/null
 figure tutorial-machines --x P --y makespan_s --by name
 figure tutorial-own --x P --y overhead_share --by name --title "How much of the time goes into messages"
+echo "SELECT P, compute_share AS computing, name AS machine FROM v_run WHERE level = 'link' ORDER BY P" >who.sql
+figure tutorial-query who.sql --kind bars --title "How much of the time is computing"
 rm -rf drawn
 "$MIMDSIM" compare t3e-300 paragon --on speedup-t3e --set n=16,64 --set level=loggp -o figures.db --dir drawn --quiet >/dev/null
 cp drawn/compare-t3e-300-paragon.svg "$into/tutorial-compare.svg"
@@ -58,7 +60,7 @@ tutorial_file() { # NAME: the indented block behind "Save this as `NAME`"
         found && /^    / { print substr($0, 5); seen = 1; next }
         found && seen { exit }' "$here/tutorial.md" >"$1"
 }
-for study in grid sample best; do
+for study in grid sample best links; do
     tutorial_file $study.yaml
     rm -f figures.db
     "$MIMDSIM" run $study.yaml -o figures.db --quiet >/dev/null
@@ -66,11 +68,18 @@ for study in grid sample best; do
     grid) figure tutorial-grid --x n --y P --z speedup ;;
     sample) figure tutorial-sample --x end_latency --y makespan_s --by solver ;;
     best) figure tutorial-best --x n --y makespan_s --by solver ;;
+    links) figure tutorial-variants --x n --y makespan_s --by name ;;
     esac
 done
 rm figures.db
 "$MIMDSIM" run speedup-t3e --set n=16,64 --set level=loggp --uncertainty 16 -o figures.db --quiet >/dev/null
 figure tutorial-uncertainty uncertainty
+
+# that of jobs.md
+rm -f figures.db
+"$MIMDSIM" interference neighbours -o figures.db --dir drawn --quiet >/dev/null
+cp drawn/interference.svg "$into/jobs-interference.svg"
+rm -f figures.db
 
 # those of what-if.md, each by its command
 for name in bandwidth-or-latency torus-or-dragonfly adaptive-routing placement oversubscription eager-limit offload ten-times \

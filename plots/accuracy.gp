@@ -6,7 +6,7 @@ array ladder_name[3] = ["network", "arithmetic", "integration"]
 array family[9] = ["", "", "", "serial methods", "paper formulation, by solver", "direct formulation, by solver", \
     "explicit steppers", "implicit steppers", "own parallel steppers"]
 array notes[3] = ["the same program on every level; a level's answer against that of the finest", \
-    "○ plain  □ solver refined  △ all refined  ◇ and forces in twice the digits;  open: float  filled: double  *: quad (no machine time)  ×: error above 0.1", \
+    "○ plain;  □ solver refined;  △ all refined;  ◇ and forces in twice the digits;  open: float;  filled: double;  *: quad (no machine time);  ×: error above 0.1", \
     "filled, solid: by tolerance;  open, dotted: by fixed steps;  machine time: on the number of processors that evaluates fastest"]
 # by refinement
 array open_shape[4] = [6, 4, 8, 12]

@@ -55,9 +55,10 @@ save_next() {
 @test "the tutorial can be typed as it stands" {
     if ! command -v gnuplot >/dev/null; then skip; fi
     save_block "$MIMDSIM_SRCDIR/docs/tutorial.md" 'Save this as `my.yaml`' my.yaml
-    for study in grid sample best; do
+    for study in grid sample best links; do
         save_next "$MIMDSIM_SRCDIR/docs/tutorial.md" "Save this as \`$study.yaml\`" $study.yaml
     done
+    sed -n '/Save this as `who.sql`/,/Its first column/p' "$MIMDSIM_SRCDIR/docs/tutorial.md" | sed -n 's/^    //p' >who.sql
     # 16 samples of two points take a second
     not_run=${not_run/|--uncertainty/}
     run_document "$MIMDSIM_SRCDIR/docs/tutorial.md" 20
@@ -76,6 +77,10 @@ save_next() {
     works mimdsim why speedup-t3e --set n=128 --set level=link --brief
     receive=$(printf '%s\n' "$output" | grep -oE '[0-9.]+ % is receive overhead' | cut -d' ' -f1)
     grep -q "$receive % of the time is \*receive overhead" "$MIMDSIM_SRCDIR/docs/tutorial.md"
+    works mimdsim run links.yaml -o links.db --only 'n >= 64' --columns machine,n,makespan_us,speedup_vs_fastest_serial -q
+    [ "${#lines[@]}" -eq 7 ]
+    for line in "${lines[@]}"; do grep -qxF "    $line" "$MIMDSIM_SRCDIR/docs/tutorial.md" || { echo "not in the tutorial: $line"; return 1; }; done
+    [ "$(wc -l <links.csv)" -eq 13 ]
     # its pictures exist, and each is of this document
     for picture in $(grep -oE '\([a-z-]*\.(svg|png)\)' "$MIMDSIM_SRCDIR/docs/tutorial.md" | tr -d '()'); do
         [ -s "$MIMDSIM_SRCDIR/docs/$picture" ]
