@@ -21,8 +21,8 @@ static const char doc[] =
     "a "
     "kernel in one file.\n\n"
     "mimdsim lab check [FOLDER...]: runs the program in each FOLDER (default: here), and compares "
-    "your predictions, what your program did, and the closed form, as whole numbers. The exit "
-    "status is 1 unless all is right.\n\n"
+    "your predictions, what your program did, and the closed form, as whole numbers. What was "
+    "simulated is shown once the prediction is right. The exit status is 1 unless all is right.\n\n"
     "mimdsim lab draw [FOLDER]: runs the program and draws the lesson's picture into FOLDER.\n\n"
     "mimdsim lab report [FOLDER]: makes FOLDER/report.html, one page to hand in: predictions and "
     "verdicts, a timeline to explore, what the run would take on other machines, the program, and "
@@ -82,15 +82,15 @@ static int copy_lab(const struct common *c, const char *student, bool mpi, struc
 /* The row of one question. Numbers that are not there are absent. */
 #define ANSWER(member) .offset = offsetof(struct lab_answer, member)
 static bool was_given(const void *row) { return ((const struct lab_answer *)row)->given; }
-static bool has_run(const void *row) { return ((const struct lab_answer *)row)->ran; }
+static bool is_shown(const void *row) { return ((const struct lab_answer *)row)->shown; }
 static const struct column answer_column[] = {
-    {"question", COLUMN_STRING, ANSWER(name), .title = "question", .width = -16,
+    {"question", COLUMN_STRING, ANSWER(name), .title = "question", .width = -17,
      .doc = "its name in answers.yaml"},
     {"unit", COLUMN_STRING, ANSWER(unit), .title = "unit", .width = -9, .doc = "of the numbers"},
     {"predicted", COLUMN_INT64, ANSWER(predicted), .known = was_given, .title = "predicted",
      .width = 14, .doc = "by the student"},
-    {"simulated", COLUMN_INT64, ANSWER(simulated), .known = has_run, .title = "simulated",
-     .width = 14, .doc = "by the student's program"},
+    {"simulated", COLUMN_INT64, ANSWER(simulated), .known = is_shown, .title = "simulated",
+     .width = 14, .doc = "by the student's program; not before the prediction is right"},
     {"verdict", COLUMN_STRING, ANSWER(verdict), .title = "verdict", .before = "  ",
      .doc = "against the closed form"},
 };
@@ -108,7 +108,7 @@ static void json_answers(const struct column *c, const void *row, struct json *j
 static const struct column result_column[] = {
     {"folder", COLUMN_STRING, RESULT(folder), .title = "folder", .width = -24,
      .doc = "of the attempt"},
-    {"lab", COLUMN_STRING, RESULT(lab), .title = "lab", .width = -14, .doc = "its name"},
+    {"lab", COLUMN_STRING, RESULT(lab), .title = "lab", .width = -16, .doc = "its name"},
     {"student", COLUMN_STRING, RESULT(student), .title = "student", .width = -16,
      .doc = "the variant"},
     {"right", COLUMN_INT, RESULT(right), .title = "right", .width = 5,
@@ -127,8 +127,13 @@ static void print_result(const struct lab_result *r)
     printf("%s: lab %s%s%s\nprogram: %s\n\n", r->folder, r->lab, r->student[0] ? ", variant " : "",
            r->student, r->program);
     columns_title(&answer_columns, stdout);
-    for (int i = 0; i < r->nanswer; i++) columns_print(&answer_columns, &r->answer[i], stdout);
+    bool hidden = false;
+    for (int i = 0; i < r->nanswer; i++) {
+        columns_print(&answer_columns, &r->answer[i], stdout);
+        hidden = hidden || (r->answer[i].ran && !r->answer[i].shown);
+    }
     printf("\n%d of %d right\n", r->right, r->nanswer);
+    if (hidden) puts("A simulated number is shown once its prediction is right.");
 }
 
 /* One cell of a teacher's spreadsheet. What begins like a formula would be one there, and a name is

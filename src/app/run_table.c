@@ -25,8 +25,10 @@ struct shown {
     unsigned whom;
 };
 
+/* A serial program that takes no time, as one whose cost its author states, is no baseline. */
 #define SPEEDUP(baseline)                                                                          \
-    "(SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = '" baseline "')"
+    "(SELECT nullif(s.speedup, 0) FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = '"       \
+    baseline "')"
 /* An error that is not known is said to be; what has no predicted time has no error either. */
 #define NOT_KNOWN(value, text)                                                                     \
     "CASE WHEN k.run_id IS NULL THEN NULL WHEN " value " IS NULL THEN 'not known' ELSE " text " E" \

@@ -20,9 +20,10 @@ static bool cannot_start(const char *program, int error, struct err *e)
     return err_set(e, ERR_INTERNAL, "'%s' cannot be started: %s", program, strerror(error));
 }
 
-/* Pipes that the child has as its standard input and output; -1: none. */
+/* Pipes that the child has as its standard input and output, or error; -1: none. */
 struct pipes {
     int to[2], from[2];
+    bool error; /* `from` is its standard error, and its output goes nowhere */
 };
 
 /* The child's descriptors and signals are set by posix_spawn, so that nothing runs between fork
@@ -41,7 +42,11 @@ static int spawn(const char *const *word, const struct pipes *p, pid_t *child)
     posix_spawnattr_setsigdefault(&attributes, &usual);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     if (p->to[0] >= 0) posix_spawn_file_actions_adddup2(&actions, p->to[0], STDIN_FILENO);
-    if (p->from[1] >= 0) posix_spawn_file_actions_adddup2(&actions, p->from[1], STDOUT_FILENO);
+    if (p->from[1] >= 0)
+        posix_spawn_file_actions_adddup2(&actions, p->from[1],
+                                         p->error ? STDERR_FILENO : STDOUT_FILENO);
+    if (p->error)
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     const int error =
         posix_spawnp(child, word[0], &actions, &attributes, (char *const *)word, environ);
     posix_spawnattr_destroy(&attributes);
@@ -83,10 +88,10 @@ static void exchange(struct pipes *p, const struct text *in, struct text *out)
 
 /* The child's output is read while its input is written. Its status is the shell's: 128 and the
  * signal's number when a signal ended it. */
-bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
-                 struct err *e)
+static bool run(const char *const *word, const struct text *in, struct text *out, bool errors,
+                int *status, struct err *e)
 {
-    struct pipes p = {{-1, -1}, {-1, -1}};
+    struct pipes p = {{-1, -1}, {-1, -1}, errors};
     const bool feeds = in != NULL && in->length > 0;
     if ((feeds && pipe2(p.to, O_CLOEXEC) != 0) || (out != NULL && pipe2(p.from, O_CLOEXEC) != 0))
         return err_set(e, ERR_INTERNAL, "no pipe to '%s': %s", word[0], strerror(errno));
@@ -112,6 +117,17 @@ bool process_run(const char *const *word, const struct text *in, struct text *ou
     sigaction(SIGPIPE, &pipe_was, NULL);
     sigaction(SIGINT, &interrupt_was, NULL);
     return error == 0 || cannot_start(word[0], error, e);
+}
+
+bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
+                 struct err *e)
+{
+    return run(word, in, out, false, status, e);
+}
+
+bool process_said(const char *const *word, struct text *said, int *status, struct err *e)
+{
+    return run(word, NULL, said, true, status, e);
 }
 
 /* For questions: gcc answers in this process's place, with its own status. */

@@ -18,6 +18,10 @@
 bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
                  struct err *e);
 
+/* process_said: the same with this process's standard input; its standard output goes nowhere, and
+ * its standard error is appended to *said. */
+bool process_said(const char *const *word, struct text *said, int *status, struct err *e);
+
 /* process_replace: become another program; returns only with an error, as above. */
 bool process_replace(const char *const *word, struct err *e);
 

@@ -281,7 +281,10 @@ static bool no_such_lab(const char *name, struct arena *a, struct err *e)
 {
     const char **names;
     const int n = lab_names(a, &names);
+    /* A mistyped "check" is looked for among the words that stand in a lab's place, too. */
+    static const char *const word[] = {"check", "draw", "report", "grade"};
     const char *near = text_nearest(name, names, n);
+    if (near == NULL) near = text_nearest(name, word, 4);
     return err_set(e, ERR_NO_INPUT, "'%.60s' is not a lab%s%s%s; `mimdsim lab` lists them", name,
                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
@@ -334,8 +337,8 @@ bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, st
 static void write_answers(const struct lab *l, struct text *out)
 {
     text_add(out,
-             "# Predict first: fill in whole numbers, times in picoseconds. Then complete the\n"
-             "# program, and let `mimdsim lab check` compare both with the simulation.\n"
+             "# Predict first: whole numbers behind colon and space (`messages: 3`), times in ps.\n"
+             "# Then complete the program, and let `mimdsim lab check` compare both.\n"
              "lab: %s\nstudent: \"%s\"\nprogram: %s\nanswers:\n",
              l->name, l->student, l->program);
     for (int i = 0; i < l->nquestion; i++)

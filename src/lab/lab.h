@@ -70,6 +70,7 @@ struct lab_answer {
     int64_t predicted, theory, simulated;
     bool asked; /* the run is asked, too */
     bool ran;   /* `simulated` is there: the program ended without an error */
+    bool shown; /* ... and may be seen: it is not the answer that is still to be found */
     const char *verdict;
 };
 

@@ -5,6 +5,7 @@
  * tolerance has to be agreed on. The run is made in a process of its own, by the command that the
  * student would type: a program that crashes takes no teacher's table with it. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -107,19 +108,21 @@ static bool same_scenario(const struct lab *l, const char *folder, enum lab_scen
 }
 
 /* Run the attempt's scenario in a process of its own, as the student would; its table is not
- * shown, its messages are. */
+ * shown, and its messages are collected in *said. */
 static bool run_scenario(const char *folder, enum lab_scenario which, const char *database,
-                         int *status, struct err *e)
+                         struct text *said, int *status, struct err *e)
 {
-    struct text scenario = {0}, table = {0};
+    struct text scenario = {0};
     text_add(&scenario, "%s/%s", folder, lab_scenario_file(which));
     const char *const word[] = {"/proc/self/exe", "run",     scenario.s, "-o",
                                 database,         "--quiet", "--force",  NULL};
-    const bool ok = process_run(word, NULL, &table, status, e);
+    const bool ok = process_said(word, said, status, e);
     text_free(&scenario);
-    text_free(&table);
     return ok;
 }
+
+/* Of a program that does not compile, or a scenario that is refused, there is no row. */
+static const char not_run[] = "the program could not be run";
 
 /* How the run ended, in a word and its reason. */
 static const char *outcome(struct store *s, struct arena *a)
@@ -133,7 +136,7 @@ static const char *outcome(struct store *s, struct arena *a)
                               "THEN status || ': ' || text ELSE status END "
                               "FROM run ORDER BY status = 'ok', id LIMIT 1";
     const bool ok = store_select(s, sql, 0, NULL, take_value, &t, &e);
-    const char *word = arena_text(a, ok && t.length > 0 ? t.s : "the program could not be run");
+    const char *word = arena_text(a, ok && t.length > 0 ? t.s : not_run);
     text_free(&t);
     return word;
 }
@@ -152,13 +155,16 @@ static const char *measuring_ended(const char *ended, struct arena *a)
  * the first one ended is how the attempt did; of the second one it is told where the first was
  * well. */
 static bool look(const struct lab *l, struct lab_result *r, enum lab_scenario which,
-                 const char *database, struct arena *a, struct err *e)
+                 const char *database, const struct text *said, struct arena *a, struct err *e)
 {
     struct err missing;
     err_clear(&missing);
-    /* A program that does not compile leaves no database; its messages have been shown. */
+    /* A program that does not compile leaves no database; the compiler's messages tell why. */
     struct store *s = store_open(database, STORE_READ, &missing);
-    const char *ended = s != NULL ? outcome(s, a) : "the program could not be run";
+    const char *ended = s != NULL ? outcome(s, a) : not_run;
+    /* Where the end of a run stands behind `program:`, its messages say the same, once a run. */
+    if (said->length > 0 && (strcmp(ended, "ok") == 0 || strcmp(ended, not_run) == 0))
+        fputs(said->s, stderr);
     if (which == LAB_SCENARIO) r->program = ended;
     else if (strcmp(r->program, "ok") == 0 && strcmp(ended, "ok") != 0)
         r->program = measuring_ended(ended, a);
@@ -176,23 +182,29 @@ static bool look(const struct lab *l, struct lab_result *r, enum lab_scenario wh
     return ok;
 }
 
-/* How far a prediction is off, roughly, so that it may be found without being read off: the unit
- * that was mistaken, or the percentage. */
+/* How far a prediction is off, so that the mistake may be found and the number not be read off:
+ * the unit that was mistaken, or the order of magnitude of the difference. A percentage would give
+ * a small whole number away, and two of them most large ones. */
 static const char *difference(const struct lab_answer *x, struct arena *a)
 {
+    enum { SMALL = 1000 }; /* of such a number even the order of magnitude says too much */
+    static const double most[] = {0.1, 1, 10, 50};
+    const int nmost = (int)(sizeof most / sizeof most[0]);
     struct text t = {0};
     const char *side = x->predicted < x->theory ? "small" : "large";
-    /* Of the sign and the order of magnitude alone: a difference would give the answer away before
-     * the program is complete. */
     const double ratio = x->theory != 0 ? (double)x->predicted / (double)x->theory : 0;
     bool unit = false;
     /* Nanoseconds for picoseconds, kilobytes for bytes: the commonest mistake has its own words. */
     for (double power = 1e3; power <= 1e12; power *= 1e3)
         unit = unit || ratio == power || ratio * power == 1;
-    text_add(&t, "wrong");
-    if (unit) text_add(&t, ": too %s by a power of 1000; which unit?", side);
-    else if (ratio > 0 && ratio < 1e3)
-        text_add(&t, ": %.2g %% too %s", 100 * (ratio > 1 ? ratio - 1 : 1 - ratio), side);
+    const double percent = 100 * (ratio > 1 ? ratio - 1 : 1 - ratio);
+    int i = 0;
+    while (i < nmost && percent >= most[i]) i++;
+    text_add(&t, "wrong: too %s", side);
+    if (unit) text_add(&t, " by a power of 1000; which unit?");
+    else if (llabs(x->theory) >= SMALL)
+        text_add(&t, ", by %s than %g %%", i < nmost ? "less" : "more",
+                 most[i < nmost ? i : nmost - 1]);
     const char *kept = arena_text(a, t.s);
     text_free(&t);
     return kept;
@@ -211,18 +223,26 @@ static const char *verdict_of(const struct lab_answer *x, struct arena *a)
     return x->ran || !x->asked ? "right" : "right, but the program did not end well";
 }
 
+/* A simulated number that agrees with the theory is the answer: who has not found it yet does not
+ * see it. One that differs is shown, as it tells what the program does. */
+static bool may_see(const struct lab_answer *x)
+{
+    return x->ran && (x->simulated != x->theory || (x->given && x->predicted == x->theory));
+}
+
 /* Runs a scenario of the attempt and looks at what came of it. */
 static bool run_and_look(const struct lab *l, struct lab_result *r, const char *folder,
                          enum lab_scenario which, struct arena *a, struct err *e)
 {
-    struct text path = {0};
+    struct text path = {0}, said = {0};
     int status;
     text_add(&path, "%s/%s", folder, which == LAB_MEASURE ? "measure.db" : "lab.db");
     /* The database of an earlier attempt would answer for this one. */
     unlink(path.s);
-    const bool ok = run_scenario(folder, which, path.s, &status, e) &&
-                    look(l, r, which, path.s, a, e);
+    const bool ok = run_scenario(folder, which, path.s, &said, &status, e) &&
+                    look(l, r, which, path.s, &said, a, e);
     text_free(&path);
+    text_free(&said);
     return ok;
 }
 
@@ -236,9 +256,9 @@ static bool run_all(const struct lab *l, struct lab_result *r, const char *folde
         bool same;
         if (!same_scenario(l, folder, s, &same, e)) return false;
         if (same) continue;
-        r->program =
-            s == LAB_MEASURE ? "not run: measure.yaml is not the lesson's, copy the lesson again"
-                             : "not run: scenario.yaml is not the lesson's, copy the lesson again";
+        r->program = s == LAB_MEASURE
+                         ? "not run: measure.yaml is not the lesson's, copy the lesson again"
+                         : "not run: scenario.yaml is not the lesson's, copy the lesson again";
         return true;
     }
     for (enum lab_scenario s = LAB_SCENARIO; s <= last; s++)
@@ -283,6 +303,7 @@ bool lab_check(struct lab_result *r, const char *folder, struct arena *a, struct
     /* Right is what the program and the student both have as the closed form has it. */
     for (int i = 0; i < r->nanswer; i++) {
         r->answer[i].verdict = verdict_of(&r->answer[i], a);
+        r->answer[i].shown = may_see(&r->answer[i]);
         r->right += strcmp(r->answer[i].verdict, "right") == 0;
     }
     return true;

@@ -75,7 +75,7 @@ static void put_answers(const struct lab_page *p, FILE *out)
         put(out, "<tr><th scope=\"row\">", p->lab->question[i].text, "</th>");
         put(out, "<td>", x->unit, "</td>");
         put_cell(out, x->given, x->predicted);
-        put_cell(out, x->ran, x->simulated);
+        put_cell(out, x->shown, x->simulated);
         put(out, "<td>", x->verdict, "</td></tr>\n");
     }
     fputs("</tbody></table></div>\n", out);

@@ -56,6 +56,21 @@ static void a_child_need_not_read(void **state)
     text_free(&out);
 }
 
+/* Messages are kept apart from what the program writes. */
+static void what_a_child_says_is_collected_alone(void **state)
+{
+    (void)state;
+    struct err e;
+    int status = -1;
+    struct text said = {0};
+    const char *const word[] = {"sh", "-c", "echo table; echo wrong >&2; exit 4", NULL};
+    err_clear(&e);
+    assert_true(process_said(word, &said, &status, &e));
+    assert_int_equal(status, 4);
+    assert_string_equal(said.s, "wrong\n");
+    text_free(&said);
+}
+
 static void a_program_that_is_not_there_is_named(void **state)
 {
     (void)state;
@@ -77,6 +92,7 @@ int main(void)
         cmocka_unit_test(statuses_are_those_of_the_shell),
         cmocka_unit_test(long_texts_pass_both_ways),
         cmocka_unit_test(a_child_need_not_read),
+        cmocka_unit_test(what_a_child_says_is_collected_alone),
         cmocka_unit_test(a_program_that_is_not_there_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

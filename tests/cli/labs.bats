@@ -42,15 +42,20 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     answer ring bytes 7
     fails_with 1 mimdsim lab check ring
     stdout_says '7 of 8 right'
-    grep -q '^bytes .* wrong: .* % too small$' <<<"$output"
-    # beside the prediction stands what the program did, in JSON as well; of a program that did not run nothing does
-    did=$(sed -n 's/^  bytes: //p' solved)
-    grep -qE "^bytes +[^ ]+ +7 +$did +wrong: " <<<"$output"
+    grep -q '^bytes .* wrong: too small, by more than 50 %$' <<<"$output"
+    # a small term that was forgotten, a count on which every word would be the answer
+    answer ring whole-round $(($(sed -n 's/^  whole-round: //p' solved) + 1000))
+    answer ring messages 3
+    fails_with 1 mimdsim lab check ring
+    grep -q '^whole-round .* wrong: too large, by less than 0.1 %$' <<<"$output"
+    grep -q '^messages .* wrong: too small$' <<<"$output"
+    # of what is hidden, and of a program that did not run, JSON has null
     run mimdsim lab check ring --json
-    [ "$(sqlite3 :memory: "SELECT a.value ->> 'predicted', a.value ->> 'simulated' FROM json_each('${output//\'/\'\'}', '\$[0].answers') a
-        WHERE a.value ->> 'question' = 'bytes'")" = "7|$did" ]
+    [ "$(sqlite3 :memory: "SELECT a.value ->> 'predicted', a.value ->> 'simulated' IS NULL FROM json_each('${output//\'/\'\'}', '\$[0].answers') a
+        WHERE a.value ->> 'question' = 'messages'")" = "3|1" ]
     output=$(mimdsim lab check broadcast --json 2>/dev/null) || true
     [ "$(sqlite3 :memory: "SELECT count(*) > 2, count(a.value ->> 'simulated') FROM json_each('${output//\'/\'\'}', '\$[0].answers') a")" = '1|0' ]
+    cp solved ring/answers.yaml
     # a mistaken unit is told as such
     answer ring bytes "$(sed -n 's/^  bytes: //p' solved)000"
     fails_with 1 mimdsim lab check ring
@@ -66,7 +71,48 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     sed -i 's/comm_recv(c, me - 1, 0, token, bytes);/comm_recv(c, me - 1, 0, token, bytes); if (me == 1) { double x; comm_send(c, 1, 9, \&x, 8); comm_recv(c, 1, 9, \&x, 8); }/' ring/ring.c
     fails_with 1 mimdsim lab check ring
     stdout_says 'program: ok'
-    stdout_says 'prediction right; the program does something else'
+    # the number of the wrong program is shown, as it is not the answer
+    grep -qE "^messages +messages +$(number ring ranks) +$(($(number ring ranks) + 1))  prediction right; the program does something" \
+        <<<"$output"
+    answer ring messages 1
+    fails_with 1 mimdsim lab check ring
+    grep -qE "^messages +messages +1 +$(($(number ring ranks) + 1))  the program does something else" <<<"$output"
+}
+
+# answers_of FOLDER: the right numbers that are long enough to be found in a text, one a line.
+answers_of() { sed -n '/^answers:/,$s/^  [A-Za-z-]*: \([0-9]\{3,\}\)$/\1/p' "$1/answers.yaml"; }
+
+@test "an answer cannot be read off the check before it is found" {
+    for lab in ring cannon dynamics; do
+        works mimdsim lab "$lab" "right-$lab" --variant eve
+        solve "right-$lab" "$lab"
+        [ "$(answers_of "right-$lab" | wc -l)" -ge 2 ]
+        works mimdsim lab "$lab" "$lab" --variant eve
+        solve_program "$lab"
+        # no prediction, a wrong one for each question: the right program runs, and its numbers stay hidden
+        for wrong in '' ' 1'; do
+            sed -i -E "/^answers:/,\$s/^  ([A-Za-z-]+):.*/  \1:$wrong/" "$lab/answers.yaml"
+            fails_with 1 mimdsim lab check "$lab"
+            stdout_says 'program: ok'
+            stdout_says 'A simulated number is shown once its prediction is right.'
+            printf '%s\n' "$output" "$stderr" >said
+            fails_with 1 mimdsim lab check "$lab" --json
+            printf '%s\n' "$output" "$stderr" >>said
+            for number in $(answers_of "right-$lab"); do
+                ! grep -qw -- "$number" said || { echo "$lab tells $number"; cat said; return 1; }
+            done
+        done
+        # one that is right is shown beside the prediction, and the others are still hidden
+        answer "$lab" messages "$(sed -n 's/^  messages: //p' "right-$lab/answers.yaml")"
+        fails_with 1 mimdsim lab check "$lab"
+        grep -qE '^messages +messages +([0-9]+) +\1  right$' <<<"$output"
+        [ "$(grep -cE ' - +wrong' <<<"$output")" -ge 1 ]
+        works mimdsim lab check "right-$lab"
+        [[ $output != *'is shown once'* ]]
+    done
+    # the page that is handed in has the same table
+    fails_with 1 mimdsim lab report ring
+    [ "$(sed -n '/<h2>Predictions/,/<\/table>/p' ring/report.html | grep -c '&ndash;</td>')" -eq 7 ]
 }
 
 @test "the same name has the same numbers, another one has others" {
@@ -91,6 +137,7 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
 
 @test "bad input is refused, and nothing is lost" {
     fails_with 66 mimdsim lab rign && stderr_says "did you mean 'ring'"
+    fails_with 66 mimdsim lab chek && stderr_says "did you mean 'check'"
     fails_with 66 mimdsim lab ../ring
     fails_with 64 mimdsim lab ring x --variant 'a"b'
     fails_with 64 mimdsim lab ring x --variant ''
@@ -170,6 +217,7 @@ setup_file() { command -v gcc >/dev/null || skip "no gcc"; }
     works mimdsim lab deadlock
     fails_with 1 mimdsim lab check deadlock
     stdout_says 'program: deadlock: rank 0 in program waits for rank 1'
+    stderr_is_empty
     printf 'this is no C\n' >>deadlock/deadlock.c
     fails_with 1 mimdsim lab check deadlock
     stdout_says 'program: the program could not be run'

@@ -57,3 +57,19 @@ right() {
         done
     done
 }
+
+@test "samples pay from some length on, as the lesson asks, and a baseline without time gives no speedup" {
+    for student in '' 'Carla de la Cruz' bob; do
+        works mimdsim lab sample-sort "it$student" ${student:+--variant "$student"}
+        solve_program "it$student"
+        works mimdsim run "it$student/scenario.yaml" --set m=144,2304 -o "m$student.db"
+        works sqlite3 "m$student.db" "SELECT group_concat(method, ' ') FROM (SELECT v.value AS method, min(r.makespan_ps) FROM run r
+            JOIN v_setting v ON v.run_id = r.id AND v.key = 'program.method' JOIN v_setting m ON m.run_id = r.id
+            AND m.key = 'program.m' GROUP BY m.value ORDER BY CAST(m.value AS INTEGER))"
+        stdout_is 'equal samples'
+    done
+    works mimdsim lab prefix-sum
+    solve_program prefix-sum
+    works mimdsim run prefix-sum/scenario.yaml -o sums.db
+    [[ $output != *speedup_vs_itself* ]]
+}
