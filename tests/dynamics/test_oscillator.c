@@ -247,6 +247,40 @@ static void sizes_are_relative_to_the_answer(void **state)
     assert_true(relative_size(0, row[0].x, row[0].y) == 0);
 }
 
+/* Heavy and light links in turn: the robust way has nearly all digits where others have few, and
+ * its last correction tells so. */
+static void the_robust_way_has_nearly_all_digits(void **state)
+{
+    (void)state;
+    double plain = 0;
+    for (int ratio = 0; ratio <= 8; ratio += 2)
+        for (int n = 2; n <= 12; n += 5) {
+            struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, n, JOINT_REVOLUTE, 3);
+            struct scene s = scene_of(&spec);
+            for (int i = 0; i < n; i += 2) {
+                s.model->body[i].mass *= pow(10, -ratio);
+                for (int k = 0; k < 6; k++) s.model->body[i].inertia[k] *= pow(10, -ratio);
+            }
+            /* the constants were made of the masses before */
+            s.model->constants = NULL;
+            double reference[12], qdd[12], direct[12];
+            struct forward_report report;
+            assert_true(
+                dynamics_type_of(PRECISION_QUAD)
+                    ->forward(s.model, s.state, FORWARD_ABA, s.a, reference, NULL, NULL, NULL));
+            assert_true(exact()->forward(s.model, s.state, FORWARD_CFA_ROBUST, s.a, qdd, NULL,
+                                         &report, NULL));
+            assert_true(relative_error(n, qdd, reference) < 1e-13);
+            assert_int_equal(report.nrow, 0);
+            assert_true(report.refined > 0 || report.fell_back);
+            if (exact()->forward(s.model, s.state, FORWARD_CFA_PAPER, s.a, direct, NULL, NULL,
+                                 NULL))
+                plain = fmax(plain, relative_error(n, direct, reference));
+            scene_end(&s);
+        }
+    assert_true(plain > 1e-9); /* without refinement it is no such thing */
+}
+
 /* Bodies without an inertia of their own: the constraint forces have no system, articulated bodies
  * have an answer, and the robust way takes it and says so. */
 static void without_inertia_articulated_bodies_take_over(void **state)
@@ -322,6 +356,7 @@ int main(void)
         cmocka_unit_test(steps_keep_quaternions_of_length_one),
         cmocka_unit_test(bodies_are_alike_in_what_they_are_asked_for),
         cmocka_unit_test(sizes_are_relative_to_the_answer),
+        cmocka_unit_test(the_robust_way_has_nearly_all_digits),
         cmocka_unit_test(without_inertia_articulated_bodies_take_over),
         cmocka_unit_test(nothing_to_accelerate_is_told),
     };

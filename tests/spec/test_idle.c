@@ -170,6 +170,27 @@ static void settings_of_network_levels(void **state)
     CHECK_CASES(cases);
 }
 
+/* Prices that one setting switches on; without segments what they could give acts itself. */
+static void settings_that_another_one_switches_on(void **state)
+{
+    (void)state;
+    static const struct idle_case cases[] = {
+        {"", "machine.node.code.div", "node.code.issue is 0"},
+        {"", "machine.node.code.step", "node.code.issue is 0"},
+        {"machine.node.code.issue=0.5 cycles", "machine.node.code.div", NULL},
+        {"", "machine.software.copy_traffic", "node.model 'rates'"},
+        {"machine.node.model=roofline", "machine.software.copy_traffic", NULL},
+        {"", "machine.network.collective.latency", "collective.kinds is empty"},
+        {"machine.network.collective.kinds=allreduce", "machine.network.collective.latency",
+         "no collective is done by 'hardware'"},
+        {"", "machine.software.send.overhead", NULL},
+        {"", "machine.software.recv.overhead", NULL},
+        {"", "machine.software.gap", NULL},
+        {"", "machine.software.eager.limit", NULL},
+    };
+    CHECK_CASES(cases);
+}
+
 #define SEGMENTS "machine.software.segments="
 
 static const struct idle_case software_cases[] = {
@@ -446,6 +467,7 @@ static void seeds_of_repetitions_differ(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(settings_that_another_one_switches_on),
         cmocka_unit_test(settings_of_topologies),
         cmocka_unit_test(settings_of_network_levels),
         cmocka_unit_test(settings_of_message_software),
