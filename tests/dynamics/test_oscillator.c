@@ -253,7 +253,7 @@ static void the_robust_way_has_nearly_all_digits(void **state)
 {
     (void)state;
     double plain = 0;
-    for (int ratio = 0; ratio <= 8; ratio += 2)
+    for (int ratio = 0; ratio <= 18; ratio += ratio == 12 ? 4 : 2)
         for (int n = 2; n <= 12; n += 5) {
             struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, n, JOINT_REVOLUTE, 3);
             struct scene s = scene_of(&spec);
@@ -270,9 +270,11 @@ static void the_robust_way_has_nearly_all_digits(void **state)
                     ->forward(s.model, s.state, FORWARD_ABA, s.a, reference, NULL, NULL, NULL));
             assert_true(exact()->forward(s.model, s.state, FORWARD_CFA_ROBUST, s.a, qdd, NULL,
                                          &report, NULL));
-            assert_true(relative_error(n, qdd, reference) < 1e-13);
+            assert_true(relative_error(n, qdd, reference) < 1e-14);
+            /* beyond what the precision resolves articulated bodies have to solve it */
+            assert_int_equal(report.fell_back, ratio > 12);
             assert_int_equal(report.nrow, 0);
-            assert_true(report.refined > 0 || report.fell_back);
+            assert_true(report.refined > 0);
             if (exact()->forward(s.model, s.state, FORWARD_CFA_PAPER, s.a, direct, NULL, NULL,
                                  NULL))
                 plain = fmax(plain, relative_error(n, direct, reference));
@@ -297,7 +299,9 @@ static void without_inertia_articulated_bodies_take_over(void **state)
                              .axis = {i % 2, 0, 1 - i % 2},
                              .com = {0.5}};
         b.placement.p[0] = i > 0;
-        if (i % 3 != 1) b.mass = 1 + i, memcpy(b.inertia, (double[6]){.1, 0, 0, .2, 0, .3}, 48);
+        if (i % 3 != 1) b.mass = i == 5 ? 1e7 : 1 + i;
+        for (int k = 0; k < 6 && b.mass > 0; k += k == 0 ? 3 : 2)
+            b.inertia[k] = b.mass * (0.1 + 0.03 * k);
         assert_true(model_add_body(s.model, &b, &e) >= 0);
     }
     s.model->gravity[1] = -9.81;
@@ -317,7 +321,7 @@ static void without_inertia_articulated_bodies_take_over(void **state)
                          !forces);
         if (forces) continue;
         assert_int_equal(report.fell_back, k == FORWARD_CFA_ROBUST);
-        assert_true(relative_error(6, qdd, reference) < 1e-10);
+        assert_true(relative_error(6, qdd, reference) < (k == FORWARD_CFA_ROBUST ? 1e-15 : 1e-10));
     }
     scene_end(&s);
 }
