@@ -199,8 +199,9 @@ static void unit_spelling(const char *text, char *name, size_t size)
         char letter[2] = {isspace((unsigned char)*text) ? ' ' : *text, '\0'};
         const char *next = letter;
         size_t eaten = 1;
-        /* One of the listed signs, or the letter itself. */
-        for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        /* One of the listed signs, or the letter itself; all but the last lie beyond ASCII. */
+        const bool plain = (unsigned char)*text < 0x80 && *text != '*';
+        for (size_t i = 0; !plain && i < sizeof same / sizeof same[0]; i++) {
             if (strncmp(text, same[i][0], strlen(same[i][0])) != 0) continue;
             next = same[i][1];
             eaten = strlen(same[i][0]);
@@ -235,6 +236,35 @@ static size_t number_span(const char *s, size_t *mantissa)
 
 enum { NUMBER_MAX = 400 }; /* characters of a mantissa; nobody writes more on purpose */
 
+/* Powers of ten that are doubles. */
+enum { EXACT_POWERS = 22, EXACT_DIGITS = 15 };
+static const double power[EXACT_POWERS + 1] = {
+    1,    1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/* few_digits: the mantissa of n characters at s times 10^exponent into *x, where its digits and the
+ * power are doubles, so that one operation rounds as strtod does (Clinger, PLDI 1990); false: they
+ * are not. */
+static bool few_digits(const char *s, size_t n, long exponent, double *x)
+{
+    int64_t m = 0;
+    int digits = 0;
+    bool point = false;
+    for (size_t i = s[0] == '+' || s[0] == '-'; i < n; i++) {
+        if (s[i] == '.') {
+            point = true;
+            continue;
+        }
+        if (++digits > EXACT_DIGITS) return false;
+        m = m * 10 + (s[i] - '0');
+        exponent -= point;
+    }
+    if (exponent < -EXACT_POWERS || exponent > EXACT_POWERS) return false;
+    *x = exponent < 0 ? (double)m / power[-exponent] : (double)m * power[exponent];
+    if (s[0] == '-') *x = -*x;
+    return true;
+}
+
 /* scaled: the number of `span` characters at s, times 10^e10, rounded once: the exponents are added
  * in the text, before strtod makes a double of it. */
 static double scaled(const char *s, size_t mantissa, size_t span, int e10)
@@ -244,6 +274,8 @@ static double scaled(const char *s, size_t mantissa, size_t span, int e10)
     /* Far outside the range of doubles: cut off before the sum could overflow. */
     if (exponent > 100000) exponent = 100000;
     if (exponent < -100000) exponent = -100000;
+    double x;
+    if (few_digits(s, mantissa, exponent + e10, &x)) return x;
     snprintf(joined, sizeof joined, "%.*se%ld", (int)mantissa, s, exponent + e10);
     return strtod(joined, NULL);
 }
@@ -369,10 +401,7 @@ static int whole_digits(double x, char digits[20], int *exponent)
  * closer. */
 static int fraction_digits(double x, char digits[20], int *exponent)
 {
-    static const double power[] = {1,    1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    for (int k = 1; k < (int)(sizeof power / sizeof *power) && x * power[k] < 1e15; k++) {
+    for (int k = 1; k <= EXACT_POWERS && x * power[k] < 1e15; k++) {
         const double m = trunc(x * power[k] + 0.5);
         if (m / power[k] != x) continue;
         const int n = whole_digits(m, digits, exponent);

@@ -142,10 +142,25 @@ static void numbers_are_as_short_as_they_read_back(void **state)
     assert_true(strtod(s, NULL) == -DBL_MAX);
 }
 
+static void integers_are_written_as_printf_writes_them(void **state)
+{
+    (void)state;
+    static const int64_t value[] = {0, 9, -1, 10, -100, INT64_MAX, INT64_MIN, 1234567890123};
+    struct text by_hand = {0}, printed = {0};
+    for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
+        text_add_integer(&by_hand, value[i]);
+        text_add(&printed, "%lld", (long long)value[i]);
+    }
+    assert_string_equal(by_hand.s, printed.s);
+    text_free(&by_hand);
+    text_free(&printed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_nearest_name_is_found),
+        cmocka_unit_test(integers_are_written_as_printf_writes_them),
         cmocka_unit_test(what_is_far_from_all_has_no_nearest_name),
         cmocka_unit_test(an_abbreviation_is_understood),
         cmocka_unit_test(the_first_of_equally_near_names_wins),
