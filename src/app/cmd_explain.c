@@ -211,6 +211,22 @@ static void print_jobs(const struct plan *p)
                p->run[i].job.beside[0] ? p->run[i].job.beside : "(alone)");
 }
 
+/* What `mimdsim why` needs beyond that for the largest run: its steps take 32 bytes each, some nine
+ * a message, fourteen where links are followed; the lists double as they grow (docs/why.md). */
+static void print_recording(const struct plan *p, const struct run_estimate *r)
+{
+    enum { LOGGP_BYTES = 310, LINK_BYTES = 460 };
+    double most = 0;
+    for (int i = 0; i < p->nrun; i++) {
+        const bool loggp = p->run[i].machine.network.level == LEVEL_LOGGP;
+        const double bytes = r[i].messages * (loggp ? LOGGP_BYTES : LINK_BYTES);
+        if (bytes > most) most = bytes;
+    }
+    if (most > 0)
+        printf("to record the critical path (mimdsim why): about %.*f MB more\n",
+               most < 1e7 ? 1 : 0, most / 1e6);
+}
+
 /* For people: the table, what is not decided yet, units, cost, then omissions and idle settings. */
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
@@ -238,6 +254,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     else
         printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s,
                t.host_bytes / 1e6);
+    print_recording(p, r);
     print_threads(p, r);
     print_nodes(p, r);
     network_remarks_print(p, stdout);

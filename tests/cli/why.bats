@@ -137,3 +137,13 @@ load helper
         FROM ideal i, run r WHERE i.machine LIKE 'infinitely fast%'" 1
     sql_is own.db 'SELECT count(makespan_ps) FROM ideal' 6
 }
+
+@test "explain tells before what recording the path will need" {
+    works mimdsim explain speedup-t3e --set n=128 --set level=link
+    stdout_says 'to record the critical path (mimdsim why): about 3.9 MB more'
+    works mimdsim explain speedup-t3e --set n=128 --set level=loggp
+    stdout_says 'to record the critical path (mimdsim why): about 2.7 MB more'
+    # one rank sends nothing
+    works mimdsim explain four-bar --set ranks=1
+    [[ $output != *'to record'* ]]
+}
