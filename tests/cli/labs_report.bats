@@ -19,7 +19,7 @@ browse() {
     local browser
     browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || skip "no Chromium"
     timeout 100 "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$PWD/profile" \
-        --window-size=1200,900 --virtual-time-budget=3000 --dump-dom "file://$PWD/$1" >seen 2>browser-said || { tail browser-said; return 1; }
+        --window-size="${width:-1200},900" --virtual-time-budget=3000 --dump-dom "file://$PWD/$1" >seen 2>browser-said || { tail browser-said; return 1; }
 }
 
 # act FILE: a copy acted.html of the page without its policy, in which the script on standard input acts as a reader would;
@@ -161,4 +161,15 @@ E
     out "no latency: $(us $((whole - P * L * 1000000))) µs, that is "
     out 'shares: send overhead|receive overhead|injection bandwidth'
     out "again: $(us $whole) µs, that is 1 times yours"
+}
+
+@test "in a browser half as wide the page is not wider than its window" {
+    solved cannon it --variant ann
+    works mimdsim lab report it
+    width=600
+    act it/report.html <<'E'
+out('window ' + document.documentElement.clientWidth + ', page ' + document.documentElement.scrollWidth);
+out('fits: ' + (document.documentElement.scrollWidth <= document.documentElement.clientWidth));
+E
+    out 'fits: true'
 }
