@@ -119,6 +119,9 @@ static void print_other_levels(const struct plan *p, FILE *out)
 
 /* ---- collectives of the network */
 
+/* How many ranks are looked at for their distances, in all runs together: half a second. */
+static const int64_t MOST_RANKS = 1 << 24;
+
 /* A collective by hardware: whose it is, what it moves, over how many links, and how long. */
 struct collective_remark {
     const struct run_spec *run;
@@ -127,8 +130,9 @@ struct collective_remark {
     double seconds;
 };
 
-/* Whether a built-in benchmark calls one of the network's, and how long that takes. */
-static bool remark_collective(const struct run_spec *r, struct arena *a,
+/* Whether a built-in benchmark calls one of the network's, and how long that takes. *left: ranks
+ * that may still be looked at; below 0: there were more. */
+static bool remark_collective(const struct run_spec *r, int64_t *left, struct arena *a,
                               struct collective_remark *c)
 {
     struct err ignored;
@@ -145,6 +149,7 @@ static bool remark_collective(const struct run_spec *r, struct arena *a,
         return true;
     }
     /* How far ranks are apart depends on where they are placed. */
+    if (*left < 0 || (*left -= r->nrank) < 0) return false;
     const struct topology *t = topology_create(&r->machine.topology, a, &ignored);
     if (!t || !placement_create(&place, &r->machine, t, r->nrank, a, &ignored)) return false;
     /* By the simulation's own functions: no formula is written twice. */
@@ -173,15 +178,19 @@ static void print_collective(const struct collective_remark *c, FILE *out)
 static void print_collectives(const struct plan *p, FILE *out)
 {
     bool any = false;
+    int64_t left = MOST_RANKS;
     for (int i = 0; i < p->nrun; i++) {
         struct collective_remark c;
         struct arena *a = arena_create();
-        if (remark_collective(&p->run[i], a, &c)) {
+        if (remark_collective(&p->run[i], &left, a, &c)) {
             print_collective(&c, out);
             any = true;
         }
         arena_destroy(a);
     }
+    if (left < 0)
+        fprintf(out, "collectives by the network of further runs: not looked at, as the ranks of the "
+                     "runs before are many\n");
     /* Once for all, behind the single ones. */
     if (any)
         fprintf(out,
@@ -212,13 +221,14 @@ void network_remarks_print(const struct plan *p, FILE *out)
 /* The same as rows: one for each run that calls one, since each may have another size. */
 void network_collectives_json(const struct plan *p, struct json *j)
 {
+    int64_t left = MOST_RANKS;
     json_key(j, "collectives");
     json_array(j);
     for (int i = 0; i < p->nrun; i++) {
         struct collective_remark c;
         /* Topologies may be large: the memory of one run at a time. */
         struct arena *a = arena_create();
-        if (remark_collective(&p->run[i], a, &c)) {
+        if (remark_collective(&p->run[i], &left, a, &c)) {
             json_object(j);
             json_key_int(j, "bytes", c.shape.count * c.shape.element);
             json_key_text(j, "collective", collective_name(c.shape.kind));

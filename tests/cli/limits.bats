@@ -127,3 +127,20 @@ X
     # the level that counts no packets
     works mimdsim run big.goal -m t3e-300 -o a.db --quiet --set level=link --set machine.network.packet='1 B'
 }
+
+# many LINE...: a scenario of 1,000 runs and more, as many.yaml.
+many() { printf '%s\n' 'schema_version: 1' "$@" >many.yaml; }
+
+@test "of many runs not every rank is looked at before the first" {
+    many 'machine: ideal' 'machine.topology: {family: torus, dims: [1048576]}' 'kernel: {name: allreduce, algorithm: hardware, message: 8 B}' \
+        'machine.network.collective: {kinds: allreduce, operations: real, latency: 1 us, per_link: 1 us}' "ranks: [$(seq -s, 1000000 1002000)]"
+    works timeout 60 "$MIMDSIM" explain many.yaml
+    stdout_says 'collectives by the network of further runs: not looked at'
+}
+
+@test "lists that are a part of every run are counted before they fill the memory" {
+    many 'machine: ideal' 'machine.topology.dims: [300000]' "machine.placement: {kind: list, list: [$(seq -s, 0 99999)]}" \
+        'kernel: barrier' 'ranks: 4' "seed: [$(seq -s, 1 1000)]"
+    fails_with 78 timeout 60 "$MIMDSIM" check many.yaml
+    stderr_says 'many.yaml: the lists of all runs, and the jobs beside each, take more than 64 MiB of text'
+}
