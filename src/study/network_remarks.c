@@ -189,8 +189,8 @@ static void print_collectives(const struct plan *p, FILE *out)
         arena_destroy(a);
     }
     if (left < 0)
-        fprintf(out, "collectives by the network of further runs: not looked at, as the ranks of the "
-                     "runs before are many\n");
+        fprintf(out, "collectives by the network of further runs: not looked at, as the ranks of "
+                     "the runs before are many\n");
     /* Once for all, behind the single ones. */
     if (any)
         fprintf(out,
