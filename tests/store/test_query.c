@@ -18,6 +18,7 @@
 struct seen {
     int headers, rows, columns, most; /* most: rows before it stops, 0: never */
     struct text text;
+    char names[40]; /* of the first and the last column of a row of texts */
 };
 
 static bool take_header(void *context, int n, const char *const *name,
@@ -58,7 +59,7 @@ static bool take_values(void *context, int n, const char *const *name,
 static bool take_texts(void *context, int n, const char *const *name, const char *const *value)
 {
     struct seen *x = context;
-    (void)name;
+    snprintf(x->names, sizeof x->names, "%s %s", name[0], name[n - 1]);
     x->columns = n;
     for (int i = 0; i < n; i++) text_add(&x->text, "%s ", value[i] != NULL ? value[i] : "null");
     return ++x->rows != x->most;
@@ -144,6 +145,7 @@ static void values_keep_their_kinds(void **state)
         assert_true(ask(s, way, query, 1, param, &x, &f->e));
         assert_string_equal(x.text.s, wanted[way]);
         assert_int_equal(x.columns, 10);
+        assert_string_equal(x.names, way == 0 ? "a x'414200'" : "");
         text_free(&x.text);
     }
     store_close(s);
