@@ -135,9 +135,9 @@ shown() {
         --name Slow -o two.db -q
     works mimdsim report two.db -q
     grep -F '>Slow</td>' two.html | grep -F 'node.call 1 us' | grep -qF 'network.hop_latency 2 us'
-    ! grep -qF '{&quot;' two.html
+    run ! grep -F '{&quot;' two.html
     grep -q 'Figure 6 for several machines' two.md
-    ! grep -qE '(shared|main|table): *(</|$)' two.md two.html
+    run ! grep -E '(shared|main|table): *(</|$)' two.md two.html
     # a link of the contents for each heading of the second level, and no two alike
     [ "$(grep -c '<h2 id=' two.html)" -gt 4 ]
     [ -z "$(grep -oE '<h2 id="[^"]*"' two.html | sort | uniq -d)" ]

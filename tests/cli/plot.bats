@@ -173,5 +173,5 @@ cell() {
     works mimdsim plot runs.db sizes.sql
     sed 's/<[^>]*>//g' figures/sizes.svg | tr -d ' ' >texts
     for text in 64 256 1Ki 16Ki 256Ki 4Mi; do grep -qxF "$text" texts || { echo "no $text"; return 1; }; done
-    ! grep -q '[0-9]ki' texts
+    run ! grep '[0-9]ki' texts
 }
