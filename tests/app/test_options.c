@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "app/flag.h"
 #include "app/load_options.h"
 #include "app/plot_options.h"
@@ -18,21 +19,6 @@
 #include "base/digest.h"
 #include "base/random.h"
 #include "study/load.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 /* A command line from words divided by blanks ("_" in a word stands for one); argv[0] is "verb". */
 struct line {

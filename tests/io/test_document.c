@@ -10,70 +10,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../support/scratch.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "io/document.h"
-
-static struct arena *arena;
-static char folder[256], path[512];
-
-static int begin(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    scratch_make(folder, sizeof folder);
-    scratch_path(path, sizeof path, folder, "x.json");
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    scratch_remove(folder);
-    arena_destroy(arena);
-    return 0;
-}
-
-static struct node *read_bytes(const char *s, size_t n, struct err *e)
-{
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(s, 1, n, f), n);
-    fclose(f);
-    err_clear(e);
-    return document_read(path, arena, e);
-}
-static struct node *read_data(const char *s, struct err *e) { return read_bytes(s, strlen(s), e); }
-
-static struct node *read_settings(const char *s, struct err *e)
-{
-    err_clear(e);
-    return document_parse_settings(s, strlen(s), "x.yaml", arena, e);
-}
-
-/* The tree of a text that must be good. */
-static struct node *good_data(const char *s)
-{
-    struct err e;
-    struct node *n = read_data(s, &e);
-    if (!n) fail_msg("%s: %d: %s", s, e.line, e.text);
-    return n;
-}
-static struct node *good_settings(const char *s)
-{
-    struct err e;
-    struct node *n = read_settings(s, &e);
-    if (!n) fail_msg("%s: %d: %s", s, e.line, e.text);
-    return n;
-}
-
-static void expect_error(const struct err *e, int line, const char *said)
-{
-    if (e->kind != ERR_DATA || e->line != line || !strstr(e->text, said))
-        fail_msg("kind %d, line %d: '%s' instead of line %d: '%s'", (int)e->kind, e->line, e->text,
-                 line, said);
-}
+#include "document_fixture.h"
 
 /* --- what is read --- */
 

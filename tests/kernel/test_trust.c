@@ -10,27 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "base/arena.h"
 #include "kernel/dynamics_program.h"
 #include "kernel/references.h"
 #include "kernel/trust.h"
 #include "model/model.h"
 #include "spec/field.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 enum { RANKS = 3 };
 

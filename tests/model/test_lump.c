@@ -10,24 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "base/random.h"
 #include "model/lump.h"
 #include "model/pose.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 static void cross(const double *a, const double *b, double *out)
 {

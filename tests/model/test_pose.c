@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "base/random.h"
 #include "model/generator.h"
 #include "model/pose.h"
@@ -19,21 +20,6 @@
 #include "model/vector_perturb.h"
 
 #define PI 3.14159265358979323846
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 /* By hand from the comments of spec/joint_list.h: what q and u are. `linear`: a letter for each
  * component of u. */

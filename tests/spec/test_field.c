@@ -10,25 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "base/random.h"
 #include "spec/field.h"
 #include "spec/spec_fields.h"
 #include "random_value.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 static size_t entry_size(const struct field *f)
 {

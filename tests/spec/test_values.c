@@ -10,24 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "spec/field.h"
 #include "spec/field_list.h"
 #include "spec/spec_fields.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 /* Sets `key` in a run of zeros; whether it was taken, and how it prints then. */
 static bool take(const char *key, const char *text, char *printed, size_t size, char *why)
