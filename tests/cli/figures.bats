@@ -4,22 +4,7 @@ load helper
 
 setup_file() {
     cd "$BATS_FILE_TMPDIR" || return 1
-    cat >small.yaml <<'END'
-schema_version: 1
-title: Small mesh
-topology: {family: mesh, dims: [4, 4]}
-node: {flop_rate: 1 Gflop/s, clock: 1 GHz, div: 1 cycles, sqrt: 1 cycles, trig: 1 cycles}
-network:
-  level: packet
-  link: {bandwidth: 16 GB/s}
-  hop_latency: 3 ns
-  end_latency: 2 ns
-  credit_latency: 2 ns
-  flit: 16 B
-  packet: 256 B
-  buffer: 16
-software: {gap: 1 us}
-END
+    small_mesh "4, 4"
     {
         "$MIMDSIM" why speedup-t3e --set n=16 --set level=link -o real.db --quiet
         "$MIMDSIM" load small.yaml --rates 0.05,0.2,0.4 --traffic uniform -o real.db --quiet

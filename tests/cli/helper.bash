@@ -78,6 +78,26 @@ json_is_valid() {
     [ "$(sqlite3 :memory: "SELECT json_valid('$quoted')")" = 1 ] || { echo "not JSON"; show; return 1; }
 }
 
+# small_mesh DIMS: small.yaml, a machine whose loads are measured in milliseconds.
+small_mesh() {
+    cat >small.yaml <<END
+schema_version: 1
+title: Small mesh
+topology: {family: mesh, dims: [$1]}
+node: {flop_rate: 1 Gflop/s, clock: 1 GHz, div: 1 cycles, sqrt: 1 cycles, trig: 1 cycles}
+network:
+  level: packet
+  link: {bandwidth: 16 GB/s}
+  hop_latency: 3 ns
+  end_latency: 2 ns
+  credit_latency: 2 ns
+  flit: 16 B
+  packet: 256 B
+  buffer: 16
+software: {gap: 1 us}
+END
+}
+
 # nothing_left_behind: the folder of the test is empty.
 nothing_left_behind() {
     local left

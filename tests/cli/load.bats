@@ -1,30 +1,10 @@
 # load.bats - mimdsim load: curves, rows, resuming, figures, and every wrong question.
 load helper
 
-# A small network that takes milliseconds, and one that cannot be run at every level.
 setup_file() { :; }
 
-small() { # small DIMS
-    cat >small.yaml <<END
-schema_version: 1
-title: Small mesh
-topology: {family: mesh, dims: [$1]}
-node: {flop_rate: 1 Gflop/s, clock: 1 GHz, div: 1 cycles, sqrt: 1 cycles, trig: 1 cycles}
-network:
-  level: packet
-  link: {bandwidth: 16 GB/s}
-  hop_latency: 3 ns
-  end_latency: 2 ns
-  credit_latency: 2 ns
-  flit: 16 B
-  packet: 256 B
-  buffer: 16
-software: {gap: 1 us}
-END
-}
-
 @test "a curve is printed, stored and drawn" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim load small.yaml --rates 0.05,0.2:0.4:0.1,0.95 --traffic uniform -q
     stdout_says "small, routing deterministic, level packet, traffic uniform"
     stdout_says "16 nodes, messages of 4 flits, cycle 1 ns, empty network 15.5 ns, bound of the routes 1.0000"
@@ -42,7 +22,7 @@ END
 }
 
 @test "stored points are not measured again, and --force measures all" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim load small.yaml --messages 10000 --rates 0.1,0.2 -q
     first=$output
     sqlite3 mimdsim.db "UPDATE load_point SET host_s = 77; UPDATE load_point SET max_ps = 1234567 WHERE offered = 0.2 AND NOT probe"
@@ -58,7 +38,7 @@ END
 }
 
 @test "what changes a point is another curve, what does not is the same" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim load small.yaml --rates 0.1 --no-saturation -q
     for change in "--size 32B" "--seed 2" "--within 5%" "--traffic transpose" "--level flit" "--software" \
         "--set machine.network.buffer=32" "--messages 20000" "--name other"; do
@@ -74,7 +54,7 @@ END
 }
 
 @test "several threads give the rows of one" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim load small.yaml --rates 0.1:0.5:0.2 --messages 10000 --traffic uniform,bitcomp -q -o one.db --jobs 1
     one=$output
     works mimdsim load small.yaml --rates 0.1:0.5:0.2 --messages 10000 --traffic uniform,bitcomp -q -o four.db --jobs 4
@@ -84,7 +64,7 @@ END
 }
 
 @test "machines, levels, routings and traffic are curves; a document has them all" {
-    small "4, 4"
+    small_mesh "4, 4"
     sed 's/mesh/torus/; s/  level/  virtual_channels: 2\n  level/' small.yaml >torus.yaml
     works mimdsim load small.yaml torus.yaml --level link,auto --traffic "tornado(4,2),shift(1)" --rates 0.1 --no-saturation -q --json
     json_is '$[0].series.traffic' "tornado(4,2)"
@@ -99,7 +79,7 @@ END
 }
 
 @test "a figure has a curve for each level, and a section" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim load small.yaml --level link,packet,flit --rates 0.1,0.3 --no-saturation -q
     sql_is mimdsim.db "SELECT group_concat(level, ' ') FROM (SELECT level FROM load_series ORDER BY level)" "flit link packet"
     for level in link packet flit; do grep -q ">$level<" figures/load-uniform.svg; done
@@ -109,7 +89,7 @@ END
 }
 
 @test "the messages of a stored run are traffic, at any speed and on any machine" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim run speedup-t3e --set n=32 --set ranks=16 --set record.spans=true -q -o program.db
     run=$(sql program.db "SELECT max(run_id) FROM span")
     works mimdsim load small.yaml --traffic "program.db:$run" --rates 0.01,0.05 --no-saturation -q
@@ -131,7 +111,7 @@ END
 }
 
 @test "an interrupted curve goes on where it was" {
-    small "8, 8"
+    small_mesh "8, 8"
     run timeout -s INT 1 "$MIMDSIM" load small.yaml --rates 0.02:1 --jobs 1
     [ "$status" -ne 0 ]
     [[ $output == *"interrupted: what is stored stays"* ]]
@@ -142,7 +122,7 @@ END
 }
 
 @test "a database without the tables gets them, and merges have them" {
-    small "4, 4"
+    small_mesh "4, 4"
     works mimdsim run pingpong -q
     sqlite3 mimdsim.db "DROP TABLE load_point; DROP TABLE load_series"
     cp mimdsim.db without.db
@@ -153,7 +133,7 @@ END
 }
 
 @test "wrong questions are refused with the value and what was expected" {
-    small "4, 4"
+    small_mesh "4, 4"
     while IFS='#' read -r status text arguments; do
         eval "fails_with $status mimdsim load $arguments"
         stderr_says "$text"
