@@ -60,7 +60,6 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     struct arena *a = x->plan->arena;
     struct machine_file m;
     struct err why;
-    int ntable;
     /* A name in a scenario is looked up beside it, one of the command line is not. */
     bool in_file = machine->line > 0;
     err_clear(&why);
@@ -74,9 +73,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     }
     machine_changes_read(&x->changes, m.path, &m.spec);
     struct start *s = TAKE(a, 1, struct start);
-    const struct field_table *const *table = field_tables(&ntable);
-    for (int i = 0; i < ntable; i++) /* the first table is the whole run's */
-        field_defaults(table[i], (char *)&s->run + table[i]->offset, a);
+    run_spec_defaults(&s->run, a);
     s->whole = m;
     s->run.machine = s->file = m.spec;
     s->name = machine->text;

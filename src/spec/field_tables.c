@@ -20,6 +20,14 @@ const struct field_table *const *field_tables(int *n)
     return tables;
 }
 
+/* Zero where no table has anything: labels made by the plan, digests, what is borrowed. */
+void run_spec_defaults(struct run_spec *r, struct arena *a)
+{
+    memset(r, 0, sizeof *r);
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+        field_defaults(tables[i], (char *)r + tables[i]->offset, a);
+}
+
 /* Tables have some tens of rows: a search costs less than an index to be kept. */
 int field_find(const struct field_table *t, const char *key)
 {

@@ -297,13 +297,15 @@ struct jobs_read {
 
 static bool take_line(struct run_spec *run, char *line, struct arena *a, char *why, int size);
 
-/* What a text does not name has its default. */
-static void set_defaults(struct run_spec *run, struct arena *a)
+/* Jobs 1 to `number` are there, with defaults at first. */
+static void need_jobs(struct jobs_read *j, int number, struct arena *a)
 {
-    int n;
-    const struct field_table *const *table = field_tables(&n);
-    memset(run, 0, sizeof *run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, a);
+    /* Room for all when the first comes: texts with jobs are few. */
+    if (j->job == NULL) {
+        j->job = TAKE(a, JOB_MOST, struct run_spec);
+        j->idle = TAKE(a, JOB_MOST, bool);
+    }
+    for (; j->n < number; j->n++) run_spec_defaults(&j->job[j->n], a);
 }
 
 /* "NUMBER.KEY = VALUE" behind "jobs." */
@@ -313,12 +315,7 @@ static bool take_job_line(struct jobs_read *j, char *line, struct arena *a, char
     const long number = strtol(line, &rest, 10);
     if (number < 1 || number > JOB_MOST || *rest != '.')
         return snprintf(why, (size_t)size, "'jobs.%.80s' is no setting of a job", line), false;
-    /* Room for all when the first comes: texts with jobs are few. */
-    if (j->job == NULL) {
-        j->job = TAKE(a, JOB_MOST, struct run_spec);
-        j->idle = TAKE(a, JOB_MOST, bool);
-    }
-    for (; j->n < number; j->n++) set_defaults(&j->job[j->n], a);
+    need_jobs(j, (int)number, a);
     if (strcmp(rest + 1, "idle = true") == 0) return j->idle[number - 1] = true;
     return take_line(&j->job[number - 1], rest + 1, a, why, size);
 }
@@ -329,12 +326,8 @@ static void join_jobs(struct run_spec *run, struct jobs_read *j, struct arena *a
     int ntable;
     const struct field_table *const *table = field_tables(&ntable);
     if (run->job.number == 0) return;
-    /* A job that is the only one of its set. */
-    if (j->job == NULL) {
-        j->job = TAKE(a, JOB_MOST, struct run_spec);
-        j->idle = TAKE(a, JOB_MOST, bool);
-    }
-    for (; j->n < run->job.number; j->n++) set_defaults(&j->job[j->n], a);
+    /* The text names the others alone. */
+    need_jobs(j, run->job.number, a);
     j->job[run->job.number - 1] = job_alone(run);
     /* Texts as the plan makes them, so that the run has its identity again. */
     struct job_set *set = TAKE(a, 1, struct job_set);
@@ -373,7 +366,7 @@ static bool take_line(struct run_spec *run, char *line, struct arena *a, char *w
 bool run_from_text(struct run_spec *run, const char *text, struct arena *a, char *why, int size)
 {
     struct jobs_read jobs = {0};
-    set_defaults(run, a);
+    run_spec_defaults(run, a);
     for (char *line = arena_text(a, text); *line != '\0';) {
         char *end = strchrnul(line, '\n');
         const bool last = *end == '\0';

@@ -114,6 +114,9 @@ struct run_spec {
     unsigned keep; /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */
 };
 
+/* run_spec_defaults: every setting at its default, all else zero; lists in `a`. */
+void run_spec_defaults(struct run_spec *r, struct arena *a);
+
 /* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes.
  * Where not, all repetitions are alike. */
 bool run_spec_is_random(const struct run_spec *r);

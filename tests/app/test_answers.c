@@ -10,26 +10,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "app/explain_space.h"
 #include "app/stored.h"
 #include "base/random.h"
 #include "spec/identity.h"
 #include "store/store.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 /* A space of four axes by hand, one of each map: 50 Mflop/s (35 .. 100 published), ... */
 static void make_space(struct explain_space *s)
@@ -140,11 +126,8 @@ static void runs_at_a_point_have_another_identity(void **state)
     (void)state;
     struct explain_space s;
     struct run_spec run, same;
-    int n;
-    const struct field_table *const *table = field_tables(&n);
     make_space(&s);
-    memset(&run, 0, sizeof run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)&run + table[i]->offset, arena);
+    run_spec_defaults(&run, arena);
     run.machine.node.flop_rate = 50e6;
     run_identify(&run, arena);
     same = run;

@@ -9,34 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "base/arena.h"
 #include "base/digest.h"
 #include "random_value.h"
 #include "spec/identity.h"
 #include "spec/spec_fields.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
-
-static void set_defaults(struct run_spec *run)
-{
-    int n;
-    const struct field_table *const *table = field_tables(&n);
-    memset(run, 0, sizeof *run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, arena);
-}
 
 /* A random value for this field; false when it is the one it has already. */
 static bool change(const struct field_table *t, const struct field *f, struct run_spec *run,
@@ -74,7 +52,7 @@ static void a_change_of_any_setting_changes_the_identity(void **state)
     const struct field_table *const *table = field_tables(&n);
     struct random random = random_make(3, 0, 0);
     struct run_spec run, changed;
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     /* From the defaults on, every change stays: identities of runs far from the defaults are told
      * apart, too. */
     for (int round = 0; round < 8; round++)
@@ -101,7 +79,7 @@ static void repetitions_and_where_files_lie_are_no_part_of_it(void **state)
 {
     (void)state;
     struct run_spec run, other;
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     text_copy(run.model.path, sizeof run.model.path, "here/robot.urdf");
     text_copy(run.model_file, sizeof run.model_file, "0123");
     run_identify(&run, arena);
@@ -121,7 +99,7 @@ static void a_program_counts_by_its_content_and_its_parameters(void **state)
     (void)state;
     struct run_spec run, other, back;
     char why[128];
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     text_copy(run.program.file, sizeof run.program.file, "here/ring.c");
     text_copy(run.program.hash, sizeof run.program.hash, "0123");
     run.program.parameters = "n = 1000\nblock = 8 KiB\n";
@@ -199,7 +177,7 @@ static void a_new_setting_with_a_default_changes_no_identity(void **state)
     for (int at = 0; at <= kernel_table.nfield; at++) {
         struct later_run later = {.chances = 3};
         struct field_table grown = kernel_table;
-        set_defaults(&later.run);
+        run_spec_defaults(&later.run, arena);
         for (int j = 0; j < kernel_table.nfield; j += 2)
             change(&kernel_table, &kernel_table.field[j], &later.run, &random);
         add_setting(&grown, rows, at);
@@ -226,7 +204,7 @@ static void the_order_of_tables_and_rows_is_no_part_of_it(void **state)
     struct run_spec run;
     struct random random = random_make(7, 0, 0);
     struct field_table mixed = kernel_table;
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < table[i]->nfield; j += 3)
             change(table[i], &table[i]->field[j], &run, &random);
@@ -248,7 +226,7 @@ static void remembered_texts_are_those_of_the_run_at_hand(void **state)
     struct identity *x = identity_create(table, n);
     struct random random = random_make(9, 0, 0);
     struct run_spec run, alone;
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     for (int round = 0; round < 200; round++) {
         const struct field_table *t = table[random_below(&random, (uint64_t)n)];
         change(t, &t->field[random_below(&random, (uint64_t)t->nfield)], &run, &random);
@@ -269,7 +247,7 @@ static void a_configuration_reads_back_to_the_same_identity(void **state)
     struct random random = random_make(13, 0, 0);
     struct run_spec run, again;
     char why[256] = "";
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     for (int round = 0; round < 20; round++) {
         run_identify(&run, arena);
         if (!run_from_text(&again, run.config_text, arena, why, sizeof why)) fail_msg("%s", why);
@@ -280,7 +258,7 @@ static void a_configuration_reads_back_to_the_same_identity(void **state)
                 change(table[i], &table[i]->field[j], &run, &random);
     }
     /* What an older program did not know has its default; what this one does not know is told. */
-    set_defaults(&run);
+    run_spec_defaults(&run, arena);
     run_identify(&run, arena);
     assert_true(run_from_text(&again, "ranks = 1\n", arena, why, sizeof why));
     run_identify(&again, arena);

@@ -8,22 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../support/arena_fixture.h"
 #include "spec/field.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 static void set(struct run_spec *run, const char *key, const char *text)
 {
@@ -38,11 +24,8 @@ static void set(struct run_spec *run, const char *key, const char *text)
 /* A run with all defaults but those in "key=value; key=value". */
 static void make_run(struct run_spec *run, const char *changes)
 {
-    int n;
-    const struct field_table *const *table = field_tables(&n);
     char line[400], *save = NULL;
-    memset(run, 0, sizeof *run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, arena);
+    run_spec_defaults(run, arena);
     snprintf(line, sizeof line, "%s", changes);
     for (char *s = strtok_r(line, ";", &save); s != NULL; s = strtok_r(NULL, ";", &save)) {
         while (*s == ' ') s++;

@@ -13,10 +13,7 @@
 
 static void set_defaults(struct run_spec *run, struct arena *a)
 {
-    int n;
-    const struct field_table *const *table = field_tables(&n);
-    memset(run, 0, sizeof *run);
-    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, a);
+    run_spec_defaults(run, a);
     run->nrank = 2;
 }
 

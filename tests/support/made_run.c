@@ -14,10 +14,8 @@ void made_identity(struct run_spec *spec, struct arena *a) { run_identify(spec, 
 
 struct run_spec made_spec(struct arena *a, const char *machine, int n, int nrank, int rep)
 {
-    struct run_spec spec = {0};
-    int ntable;
-    const struct field_table *const *table = field_tables(&ntable);
-    for (int i = 0; i < ntable; i++) field_defaults(table[i], (char *)&spec + table[i]->offset, a);
+    struct run_spec spec;
+    run_spec_defaults(&spec, a);
     text_copy(spec.scenario, sizeof spec.scenario, "made");
     text_copy(spec.machine.name, sizeof spec.machine.name, machine);
     text_copy(spec.kernel.name, sizeof spec.kernel.name, "dynamics");
