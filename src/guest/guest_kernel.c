@@ -60,9 +60,10 @@ static bool read_declaration(struct guest_run *g, const struct run_spec *spec, s
 }
 
 /* The run's setting goes before the program's wish; counted blocks are the default. */
-static enum program_cost cost_of(const struct guest_run *g, const struct program_spec *p)
+static enum program_cost cost_of(const struct guest_run *g, const struct program_run *r)
 {
-    if (p->cost != PROGRAM_COST_DECLARED) return p->cost;
+    if (r->order.real) return PROGRAM_COST_REAL;
+    if (r->spec.program.cost != PROGRAM_COST_DECLARED) return r->spec.program.cost;
     return g->declared->cost == MIMDSIM_COST_AUTHOR ? PROGRAM_COST_AUTHOR : PROGRAM_COST_BLOCKS;
 }
 
@@ -93,7 +94,7 @@ static bool kernel_open(struct program_run *r, struct err *e)
         return err_set(e, ERR_CONFIG, "program '%s' of a stored run is not at hand",
                        r->spec.kernel.name);
     if (!read_declaration(g, &r->spec, r->arena, e)) return false;
-    g->cost = cost_of(g, &r->spec.program);
+    g->cost = cost_of(g, r);
     make_rank(g);
     r->rank = &g->rank;
     return true;
@@ -120,7 +121,8 @@ static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct 
                                     .calls = &guest_calls,
                                     .memory = scratch,
                                     .results = &g->results,
-                                    .output = r->spec.program.output,
+                                    .output = r->order.output,
+                                    .host_limit = r->order.host_limit,
                                     .stack_bytes = g->rank.stack_bytes,
                                     .said = &g->said};
     r->said = &g->said;
@@ -182,6 +184,7 @@ static void run_check(struct program_run *r, struct run_result *out)
                             .results = &none,
                             .seen = &g->results,
                             .check = out,
+                            .host_limit = r->order.host_limit,
                             .tolerance = g->declared->tolerance};
     struct err e;
     err_clear(&e);
@@ -202,8 +205,8 @@ static void kernel_check(struct program_run *r, struct arena *scratch, struct ru
     (void)scratch;
     check_gaps(g, out);
     if (first->run != NULL) {
-        const struct serial_answer *a = serial_answer(r->cache, &r->spec, GUEST_SERIAL, g->cost,
-                                                      g->rank.stack_bytes, why, (int)sizeof why);
+        const struct serial_answer *a =
+            serial_answer(r, GUEST_SERIAL, g->cost, g->rank.stack_bytes, why, (int)sizeof why);
         if (a != NULL) compare(g, first->name, &a->results, out);
         else lose(out, first->name, why);
     }
@@ -217,7 +220,7 @@ static void add_baseline(struct program_run *r, int part, const char *name, stru
     struct guest_run *g = r->own;
     char why[1024];
     const struct serial_answer *a =
-        serial_answer(r->cache, &r->spec, part, g->cost, g->rank.stack_bytes, why, (int)sizeof why);
+        serial_answer(r, part, g->cost, g->rank.stack_bytes, why, (int)sizeof why);
     if (a == NULL)
         return; /* the first one's failure has been told; a parallel code may need more ranks */
     /* Time and counted work of one processor: what the speedup divides by. */

@@ -161,7 +161,8 @@ static bool mpi_prepare(struct program_run *r, struct arena *scratch, struct err
                              .stack_bytes = GUEST_STACK_BYTES,
                              .said = &m->said,
                              .cost = cost == PROGRAM_COST_DECLARED ? PROGRAM_COST_BLOCKS : cost,
-                             .output = r->spec.program.output};
+                             .output = r->order.output,
+                             .host_limit = r->order.host_limit};
     r->said = &m->said;
     m->job = m;
     r->job = &m->job;

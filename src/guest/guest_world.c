@@ -121,7 +121,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
     /* From here on a crash, or a loop that calls nothing, is this program's. */
     const char *job = w->spec->job.name;
     crash_watch(w->image, w->stack_bytes, job[0] != '\0' ? job : NULL);
-    crash_limit(p->host_limit > 0 ? p->host_limit : PROGRAM_HOST_LIMIT);
+    crash_limit(w->host_limit > 0 ? w->host_limit : PROGRAM_HOST_LIMIT);
     /* Collectives by the rules of the machine's software, unless a rank chooses one by name. */
     if (!collective_rules_parse(w->spec->machine.software.collectives, w->rule, &w->nrule, why,
                                 (int)sizeof why))

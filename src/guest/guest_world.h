@@ -41,6 +41,7 @@ struct guest_world {
     double tolerance;
     enum program_output output; /* what becomes of the ranks' lines */
     struct text *said;          /* where they gather; NULL: nowhere */
+    double host_limit;          /* as in run_order */
     bool asked_size;            /* a rank asked how many ranks the run has */
 };
 

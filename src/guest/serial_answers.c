@@ -77,25 +77,30 @@ static void take_times(struct serial_answer *a, const struct run_result *r)
     for (int i = 0; i < r->nstage; i++) work_add(&a->work, &r->stage[i].work);
 }
 
-const struct serial_answer *serial_answer(struct program_cache *cache, const struct run_spec *spec,
-                                          int part, enum program_cost cost, int64_t stack_bytes,
-                                          char *why, int size)
+const struct serial_answer *serial_answer(const struct program_run *r, int part,
+                                          enum program_cost cost, int64_t stack_bytes, char *why,
+                                          int size)
 {
+    const struct run_spec *spec = &r->spec;
     char key[65];
     make_key(spec, part, cost, key);
-    struct serial_answer *a = find(cache, key, spec->nrank);
+    struct serial_answer *a = find(r->cache, key, spec->nrank);
     if (a != NULL) return a;
     struct arena *memory = arena_create();
     struct run_result *out = TAKE(memory, 1, struct run_result);
     struct guest_results results = {0};
-    struct guest_world w = {
-        .spec = spec, .cost = cost, .calls = &guest_calls, .memory = memory, .results = &results};
+    struct guest_world w = {.spec = spec,
+                            .cost = cost,
+                            .calls = &guest_calls,
+                            .memory = memory,
+                            .results = &results,
+                            .host_limit = r->order.host_limit};
     struct err e;
     err_clear(&e);
     /* Only answers of runs that ended well are kept; a failure is told each time. */
     const bool made = guest_alone(&w, part, stack_bytes, memory, out, &e);
     if (made && out->status == RUN_OK) {
-        a = place(cache);
+        a = place(r->cache);
         text_copy(a->key, sizeof a->key, key);
         a->nrank = w.asked_size ? spec->nrank : 0;
         /* The results change hands: the cache frees them. */

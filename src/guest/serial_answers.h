@@ -19,13 +19,13 @@ struct serial_answer {
 struct program_cache *serial_answers_create(void);
 void serial_answers_destroy(struct program_cache *cache);
 
-/* serial_answer: part `part` of the program of `spec` on one processor: from the cache, or run now.
+/* serial_answer: part `part` of the program of `r` on one processor: from its cache, or run now.
  *
  *   why  out  on failure, in `size` bytes: what became of it
  *
  *   Returns NULL when it did not end; else the answer, which lasts while the run does. */
-const struct serial_answer *serial_answer(struct program_cache *cache, const struct run_spec *spec,
-                                          int part, enum program_cost cost, int64_t stack_bytes,
-                                          char *why, int size);
+const struct serial_answer *serial_answer(const struct program_run *r, int part,
+                                          enum program_cost cost, int64_t stack_bytes, char *why,
+                                          int size);
 
 #endif

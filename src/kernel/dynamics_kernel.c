@@ -32,46 +32,50 @@ static int64_t largest_message(const void *job_)
     const struct kernel_job *job = job_;
     bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
     /* Trees and Thomas gather compounds or rows of unknown number: no bound. */
-    if (kernel_branches(job->spec, job->model) || gathers || job->model->nbody != job->nrank)
+    if (kernel_branches(job->model, &job->omit) || gathers || job->model->nbody != job->nrank)
         return -1;
     return (3 * SQUARE + SPACE) * (int64_t)sizeof(real);
 }
 
 /* What a spec may ask for and the program does not have is refused here, before anything is
  * built. */
-static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts_inverse(const struct kernel_job *job, struct err *e)
 {
+    const struct run_spec *spec = job->spec;
+    const struct model *model = job->model;
     if (spec->nrank > model->nbody)
         return err_set(e, ERR_CONFIG, "%d ranks for %d bodies: each rank needs at least one body",
                        spec->nrank, model->nbody);
     /* Compounds have structured operators only. */
-    if (kernel_branches(spec, model) && spec->kernel.operators == OPERATORS_DENSE)
+    if (kernel_branches(model, &job->omit) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
     return true;
 }
 
 /* Linearly implicit springs change the rows of the system (physics 9.0); where a variant would need
  * them and has not been written, the run is refused and not computed differently. */
-static bool accepts_implicit(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts_implicit(const struct kernel_job *job, struct err *e)
 {
-    const struct kernel_spec *k = &spec->kernel;
+    const struct kernel_spec *k = &job->spec->kernel;
+    const struct model *model = job->model;
     if (k->formulation != FORMULATION_DIRECT)
         return err_set(
             e, ERR_CONFIG,
             "linearly implicit steps exist in the direct formulation: kernel.formulation");
     if (model->nloop > 0)
         return err_set(e, ERR_CONFIG, "linearly implicit steps exist for open systems only");
-    if (kernel_branches(spec, model) && k->inner_refinements > 0)
+    if (kernel_branches(model, &job->omit) && k->inner_refinements > 0)
         return err_set(
             e, ERR_CONFIG,
             "linearly implicit steps of trees have no inner refinement: take an outer one");
     return true;
 }
 
-static bool accepts_forward(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts_forward(const struct kernel_job *job, struct err *e)
 {
-    const struct kernel_spec *k = &spec->kernel;
-    if (!accepts_inverse(spec, model, e)) return false;
+    const struct kernel_spec *k = &job->spec->kernel;
+    const struct model *model = job->model;
+    if (!accepts_inverse(job, e)) return false;
     /* Phi = I^-1 enters the constraint system: massless bodies and point masses have none (physics
      * 1.4). */
     if (!model->has_phi)
@@ -79,24 +83,24 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
             e, ERR_CONFIG,
             "a body has no invertible inertia: the constraint force algorithm needs one");
     /* The textbook's reduction forms inverses and keeps no factors (physics 5.3 i). */
-    if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR &&
+    if (!kernel_branches(model, &job->omit) && k->solver == SOLVER_PCR &&
         k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG,
                        "solver pcr keeps no factors to refine with: choose pcr-symmetric");
     /* forward_exact.c is the operator form of chains (physics 4.8); the paper's form takes its
      * answer from products with B and C instead. */
     if (k->residual == RESIDUAL_TWICE &&
-        (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
+        (kernel_branches(model, &job->omit) || k->formulation != FORMULATION_DIRECT))
         return err_set(e, ERR_CONFIG,
                        "residual: twice exists for open chains in the direct formulation");
-    return !kernel_spec_implicit(k) || accepts_implicit(spec, model, e);
+    return !kernel_spec_implicit(k) || accepts_implicit(job, e);
 }
 
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 {
     /* Trees have pieces, chains have blocks; both are made once and read by all ranks. */
     (void)e;
-    const bool tree = kernel_branches(job->spec, job->model);
+    const bool tree = kernel_branches(job->model, &job->omit);
     job->shared = tree ? (const void *)tree_shared_make(job, a) : chain_shared_make(job, a);
     return true;
 }
@@ -131,7 +135,7 @@ static size_t head(size_t size) { return (size + 15) & ~(size_t)15; }
 static size_t inverse_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
-    if (kernel_branches(job->spec, job->model)) {
+    if (kernel_branches(job->model, &job->omit)) {
         struct tree_inverse measured;
         struct carve c = {.used = head(sizeof measured)};
         tree_inverse_carve(&measured, &c, job, rank);
@@ -147,7 +151,7 @@ static size_t inverse_bytes(const void *job_, int rank)
 static size_t forward_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
-    if (kernel_branches(job->spec, job->model)) {
+    if (kernel_branches(job->model, &job->omit)) {
         struct contraction measured;
         struct carve c = {.used = head(sizeof measured)};
         contraction_carve(&measured, &c, job, rank);
@@ -220,7 +224,7 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
 static void inverse_run(struct comm *c, const void *job_, void *workspace)
 {
     const struct kernel_job *job = job_;
-    if (kernel_branches(job->spec, job->model)) tree_inverse_run(c, job, workspace);
+    if (kernel_branches(job->model, &job->omit)) tree_inverse_run(c, job, workspace);
     else chain_inverse_run(c, job, workspace);
 }
 
@@ -246,7 +250,7 @@ static void tree_forward_run(struct comm *c, const struct kernel_job *job, struc
 static void either_forward_run(struct comm *c, const void *job_, void *workspace)
 {
     const struct kernel_job *job = job_;
-    if (kernel_branches(job->spec, job->model)) tree_forward_run(c, job, workspace);
+    if (kernel_branches(job->model, &job->omit)) tree_forward_run(c, job, workspace);
     else chain_forward_run(c, job, workspace);
 }
 

@@ -17,14 +17,18 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
 {
     struct dynamics_run *d = TAKE(r->arena, 1, struct dynamics_run);
     *d = (struct dynamics_run){.given = r->spec.kernel};
-    d->kernel = omission_kernel(&r->spec, m, s, e);
-    if (!d->kernel || !d->kernel->accepts(&r->spec, m, e)) return false;
     /* Monitors cost the machine nothing, but a real processor their time: a real run is made
      * without them, after a simulated one whose answer they judged. */
-    const bool watch = r->spec.program.cost != PROGRAM_COST_REAL;
-    d->job = (struct kernel_job){
-        .spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = watch};
-    d->job.omit = omission_job(&r->spec, m, s);
+    const bool watch = !r->order.real;
+    d->job = (struct kernel_job){.spec = &r->spec,
+                                 .model = m,
+                                 .state = s,
+                                 .omit = omission_job(&r->spec, r->order.keep, m, s),
+                                 .keep = r->order.keep,
+                                 .nrank = r->spec.nrank,
+                                 .watch = watch};
+    d->kernel = omission_kernel(&r->spec, r->order.keep, m, s, e);
+    if (!d->kernel || !d->kernel->accepts(&d->job, e)) return false;
     r->own = d;
     r->rank = &d->kernel->rank;
     r->job = &d->job;
@@ -66,7 +70,8 @@ static bool open(struct program_run *r, struct err *e)
 {
     /* The scene belongs to the cache: runs of one campaign that differ in machine or network share
      * it. */
-    struct scene *scene = fits_in_memory(r, e) ? scene_take(r->cache, &r->spec, e) : NULL;
+    struct scene *scene =
+        fits_in_memory(r, e) ? scene_take(r->cache, &r->spec, r->order.keep, e) : NULL;
     if (!scene || !dynamics_open(r, scene->model, scene->state, e)) return false;
     struct dynamics_run *d = dynamics_run_of(r);
     d->scene = scene;
@@ -126,7 +131,8 @@ static bool again(struct program_run *r, struct run_result *out)
     if (d->attempts++ == 0) d->residual_before = out->residual;
     const bool solves =
         d->kernel->does_forward && (out->status == RUN_OK || out->status == RUN_INVALID);
-    if (solves && !d->reverted && trust_refine(&r->spec, d->job.model, out)) return true;
+    if (solves && !d->reverted && trust_refine(&r->spec, d->job.model, &d->job.omit, out))
+        return true;
     const bool added = now->inner_refinements > d->given.inner_refinements ||
                        now->outer_refinements > d->given.outer_refinements;
     /* A residual that is no number is never better. */

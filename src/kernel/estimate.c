@@ -268,7 +268,7 @@ void estimate_inverse(const struct run_spec *spec, const struct model *model,
 {
     const struct outline o = outline_of(spec, model);
     *out = (struct program_estimate){0};
-    if (kernel_branches(spec, model)) {
+    if (kernel_branches(model, omit)) {
         estimate_tree(spec, model, omit, true, false, out);
         return;
     }
@@ -287,7 +287,7 @@ void estimate_forward(const struct run_spec *spec, const struct model *model,
     const struct outline o = outline_of(spec, model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     *out = (struct program_estimate){0};
-    if (kernel_branches(spec, model)) {
+    if (kernel_branches(model, omit)) {
         estimate_tree(spec, model, omit, false, true, out);
         repeat(out, evaluations(&spec->kernel));
     out->flops += stepping(&spec->kernel, model, spec->nrank);

@@ -29,11 +29,10 @@ static inline bool kernel_fits_trees(const struct kernel_spec *k)
 }
 
 /* kernel_branches: the programs for trees run it: the model is not a plain open chain, or the run
- * keeps branch and loop phases all the same, where that can be. */
-static inline bool kernel_branches(const struct run_spec *spec, const struct model *m)
+ * keeps branch and loop phases all the same. */
+static inline bool kernel_branches(const struct model *m, const struct job_omit *omit)
 {
-    return !m->is_chain || m->nloop > 0 ||
-           ((spec->keep & KEEP_BRANCHES) && kernel_fits_trees(&spec->kernel));
+    return !m->is_chain || m->nloop > 0 || omit->branches;
 }
 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan:

@@ -30,6 +30,7 @@ struct job_omit {
     /* velocity, load and base: the joint forces that the paper's formulation subtracts are zero */
     bool bias;
     int fixed;     /* bodies on fixed joints that have become part of others in job->model */
+    bool branches; /* not left out: branch and loop phases, although nothing branches */
 };
 
 struct kernel_job {
@@ -37,6 +38,7 @@ struct kernel_job {
     const struct model *model; /* NULL for kernels that need none (micro-benchmarks) */
     const struct state *state; /* q, qd, qdd, tau, external forces */
     struct job_omit omit;
+    unsigned keep; /* KEEP_* of the order */
     int nrank;
     const void *shared;     /* what prepare made: partition tables, constant inertias; read-only */
     bool watch;             /* the ranks are to publish what the solver sees of its own answer */
@@ -50,8 +52,9 @@ struct kernel_type {
     bool planar; /* computes in three components: the scene must be planar (dynamics/planar.h) */
     struct rank_program rank; /* what each rank executes; its job is a struct kernel_job */
 
-    /* accepts: false with ERR_CONFIG when this kernel cannot run the spec (n < P, wrong model). */
-    bool (*accepts)(const struct run_spec *spec, const struct model *model, struct err *e);
+    /* accepts: false with ERR_CONFIG when this kernel cannot run the job (n < P, wrong model), of
+     * which spec, model and omit are there. */
+    bool (*accepts)(const struct kernel_job *job, struct err *e);
 
     /* prepare: tables shared by all ranks, from `a`, into job->shared; costs no simulated time. */
     bool (*prepare)(struct kernel_job *job, struct arena *a, struct err *e);

@@ -29,9 +29,9 @@ static size_t workspace_bytes(const void *job, int rank)
 }
 
 /* A benchmark of messages needs a partner; a barrier does not. */
-static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts(const struct kernel_job *job, struct err *e)
 {
-    (void)model;
+    const struct run_spec *spec = job->spec;
     if (spec->nrank < 2)
         return err_set(e, ERR_CONFIG, "%d ranks: a message needs at least two", spec->nrank);
     if (spec->kernel.message_bytes < 0)
@@ -40,19 +40,19 @@ static bool accepts(const struct run_spec *spec, const struct model *model, stru
     return true;
 }
 
-static bool accepts_barrier(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts_barrier(const struct kernel_job *job, struct err *e)
 {
-    (void)spec, (void)model, (void)e;
+    (void)job, (void)e;
     return true;
 }
 
 /* Pairs: with an odd number one rank would have no partner. */
-static bool accepts_even(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts_even(const struct kernel_job *job, struct err *e)
 {
-    if (spec->nrank % 2)
-        return err_set(e, ERR_CONFIG, "bisection needs an even number of ranks, not %d",
-                       spec->nrank);
-    return accepts(spec, model, e);
+    const int ranks = job->spec->nrank;
+    if (ranks % 2)
+        return err_set(e, ERR_CONFIG, "bisection needs an even number of ranks, not %d", ranks);
+    return accepts(job, e);
 }
 
 /* Nothing is shared between ranks but the settings. */

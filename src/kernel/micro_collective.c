@@ -105,9 +105,9 @@ const struct collective_algorithm *micro_collective_algorithm(const struct run_s
 }
 
 /* Refused before the run: a bad size, a root outside, an algorithm that does not fit. */
-static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts(const struct kernel_job *job, struct err *e)
 {
-    (void)model;
+    const struct run_spec *spec = job->spec;
     const struct kernel_spec *k = &spec->kernel;
     if (k->message_bytes < 0)
         return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)k->message_bytes);

@@ -21,7 +21,7 @@ bool micro_open(struct program_run *r, struct err *e)
     r->own = m;
     r->rank = &m->kernel->rank;
     r->job = &m->job;
-    return m->kernel->accepts(&r->spec, NULL, e);
+    return m->kernel->accepts(&m->job, e);
 }
 
 /* One output: the time that each rank measured. */

@@ -32,9 +32,9 @@ static int ring_count(const struct run_spec *spec)
 }
 
 /* A ring of two has one neighbour on both sides; a ring of one has none. */
-static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
+static bool accepts(const struct kernel_job *job, struct err *e)
 {
-    (void)model;
+    const struct run_spec *spec = job->spec;
     if (spec->kernel.message_bytes < 0)
         return err_set(e, ERR_CONFIG, "a message of %lld bytes",
                        (long long)spec->kernel.message_bytes);

@@ -17,43 +17,46 @@ static bool all_zero(const double *x, int n)
 
 /* A term that is zero in all its parts for the whole run is not computed. Exact zeros only: a small
  * number is a number. */
-struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
+struct job_omit omission_job(const struct run_spec *spec, unsigned keep, const struct model *m,
                              const struct state *s)
 {
     struct job_omit o = {0};
     if (!m) return o;
     /* With time steps a state at rest begins to move: velocities count. */
     const bool rest = spec->kernel.steps == 0 && all_zero(s->qd, m->nu);
-    o.velocity = rest && !(spec->keep & KEEP_VELOCITY);
+    o.velocity = rest && !(keep & KEEP_VELOCITY);
     /* P = 0 and no external force: nothing loads the bodies. */
     o.load = o.velocity && !s->fext;
     /* At constant velocity without gravity the base's term is zero (physics 1.6). */
-    o.base =
-        all_zero(s->base_acceleration, 6) && all_zero(m->gravity, 3) && !(spec->keep & KEEP_BASE);
-    o.turn = all_zero(s->base_acceleration, 3) && !(spec->keep & KEEP_TURN);
+    o.base = all_zero(s->base_acceleration, 6) && all_zero(m->gravity, 3) && !(keep & KEEP_BASE);
+    o.turn = all_zero(s->base_acceleration, 3) && !(keep & KEEP_TURN);
     /* All three causes gone: the bias xi is zero (physics 4.2). */
-    o.bias = o.load && o.base && !(spec->keep & KEEP_BIAS);
+    o.bias = o.load && o.base && !(keep & KEEP_BIAS);
+    /* Only where the programs for trees have all that is asked for. */
+    o.branches = (keep & KEEP_BRANCHES) && kernel_fits_trees(&spec->kernel);
     return o;
 }
 
 /* in_plane: whether a run that leaves the algebra open takes three components. Not for loops in
  * float: there the spatial programs' loop forces out of the plane, zero in truth, are rounding of
  * any size: no bound would hold. */
-static bool in_plane(const struct run_spec *spec, const struct model *m, const struct state *s)
+static bool in_plane(const struct run_spec *spec, unsigned keep, const struct model *m,
+                     const struct state *s)
 {
     /* planar_scene says why not; here only whether. */
     const struct kernel_spec *k = &spec->kernel;
     struct err why;
     err_clear(&why);
-    if ((spec->keep & KEEP_SPATIAL) || k->operators != OPERATORS_STRUCTURED) return false;
+    if ((keep & KEEP_SPATIAL) || k->operators != OPERATORS_STRUCTURED) return false;
     return !(m->nloop > 0 && k->precision == PRECISION_FLOAT) &&
            planar_scene(m, s, k->precision, &why);
 }
 
 /* "auto" decides by the scene; a planar algebra that was asked for and does not fit is an error
  * with its reason. */
-const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m,
-                                          const struct state *s, struct err *e)
+const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned keep,
+                                          const struct model *m, const struct state *s,
+                                          struct err *e)
 {
     const struct kernel_spec *k = &spec->kernel;
     const struct kernel_type *kernel = kernel_find_precision(k->name, k->precision);
@@ -61,7 +64,7 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, const str
         err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", k->name);
     if (!kernel || !m || k->algebra == ALGEBRA_SPATIAL) return kernel;
     if (k->algebra == ALGEBRA_AUTO)
-        return in_plane(spec, m, s) ? kernel_find_planar(k->name, k->precision) : kernel;
+        return in_plane(spec, keep, m, s) ? kernel_find_planar(k->name, k->precision) : kernel;
     return planar_scene(m, s, k->precision, e) ? kernel_find_planar(k->name, k->precision) : NULL;
 }
 
@@ -74,18 +77,17 @@ int omission_movable(const struct model *m)
 }
 
 /* Merging must leave a body for every rank: P is given, and the model is not cut below it. */
-int omission_mergeable(const struct run_spec *spec, int nbody, int movable)
+int omission_mergeable(int nrank, unsigned keep, int nbody, int movable)
 {
-    return movable > 0 && movable >= spec->nrank && !(spec->keep & KEEP_FIXED) ? nbody - movable
-                                                                               : 0;
+    return movable > 0 && movable >= nrank && !(keep & KEEP_FIXED) ? nbody - movable : 0;
 }
 
-int omission_scene(const struct run_spec *spec, struct model **m, struct state **s, struct arena *a)
+int omission_scene(int nrank, unsigned keep, struct model **m, struct state **s, struct arena *a)
 {
     struct lumped lumped;
     struct err refused;
     err_clear(&refused);
-    int fixed = omission_mergeable(spec, (*m)->nbody, omission_movable(*m));
+    int fixed = omission_mergeable(nrank, keep, (*m)->nbody, omission_movable(*m));
     /* A model whose fixed joints cannot be merged (a loop in the way) is taken as it is. */
     if (fixed > 0 && lump_fixed(*m, true, a, &lumped, &refused)) {
         *s = lump_state(&lumped, *m, *s, a);
@@ -94,8 +96,8 @@ int omission_scene(const struct run_spec *spec, struct model **m, struct state *
         fixed = 0;
     }
     /* What is kept is computed with zeros, so that both ways can be compared. */
-    if (spec->keep & KEEP_EXTERNAL) state_fext_need(*s, *m, a);
-    (*m)->general_joints = (spec->keep & KEEP_GENERAL) != 0;
+    if (keep & KEEP_EXTERNAL) state_fext_need(*s, *m, a);
+    (*m)->general_joints = (keep & KEEP_GENERAL) != 0;
     return fixed;
 }
 

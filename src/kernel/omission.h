@@ -13,28 +13,27 @@
 #include "program/program.h"
 #include "spec/run_spec.h"
 
-/* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on
- * fixed joints become part of others where that leaves enough for all ranks; what is put back is
- * added. Changes *m and *s, replacing them by new ones in `a` when bodies merge. Returns how many
- * did. */
-int omission_scene(const struct run_spec *spec, struct model **m, struct state **s,
-                   struct arena *a);
+/* omission_scene: the scene that the kernels and the serial codes get: bodies on fixed joints
+ * become part of others where that leaves enough for all `nrank` ranks; what `keep` (KEEP_* of the
+ * order, here and below) puts back is added. Changes *m and *s, replacing them by new ones in `a`
+ * when bodies merge. Returns how many did. */
+int omission_scene(int nrank, unsigned keep, struct model **m, struct state **s, struct arena *a);
 
 /* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies
  * omission_scene will merge of `nbody`, `movable` of which are on joints that move. */
 int omission_movable(const struct model *m);
-int omission_mergeable(const struct run_spec *spec, int nbody, int movable);
+int omission_mergeable(int nrank, unsigned keep, int nbody, int movable);
 
 /* omission_kernel: the kernel that spec->kernel names, in the algebra that it asks for; auto: in
- * three components where the scene is planar and the operators are not dense, spec->keep obeyed. m,
- * s NULL: kernels without a model. NULL with *e set when there is no such kernel, or the scene is
- * not planar as asked. */
-const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m,
-                                          const struct state *s, struct err *e);
+ * three components where the scene is planar and the operators are not dense. m, s NULL: kernels
+ * without a model. NULL with *e set when there is no such kernel, or the scene is not planar as
+ * asked. */
+const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned keep,
+                                          const struct model *m, const struct state *s,
+                                          struct err *e);
 
-/* omission_job: what a kernel leaves out in a scene, spec->keep obeyed. m, s NULL: kernels without
- * a model. */
-struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
+/* omission_job: what a kernel leaves out in a scene. m, s NULL: kernels without a model. */
+struct job_omit omission_job(const struct run_spec *spec, unsigned keep, const struct model *m,
                              const struct state *s);
 
 /* omission_list: what a program leaves out by its job's spec, model, state and omit. */

@@ -201,7 +201,7 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
         if (dense) dense_tally_inverse(job->model, &inverse);
         program_baseline_add(out, price, "rnea", &inverse);
     }
-    const bool keep = job->spec->keep & KEEP_BASELINE;
+    const bool keep = job->keep & KEEP_BASELINE;
     const bool choose = job->spec->record.baselines == BASELINES_NEEDED && !keep;
     struct work aba_work;
     const struct work *aba = NULL;

@@ -35,22 +35,22 @@ void scene_cache_destroy(struct program_cache *cache)
 
 /* One arena per scene, so that giving it away is one call. What can be left out is decided here,
  * once for all runs that share the scene. */
-static struct scene *scene_make(const struct run_spec *spec, struct err *e)
+static struct scene *scene_make(const struct run_spec *spec, unsigned keep, struct err *e)
 {
     struct arena *a = arena_create();
     struct scene *s = TAKE(a, 1, struct scene);
     s->arena = a;
     s->spec = spec->model;
-    s->keep = spec->keep;
+    s->keep = keep;
     s->still = spec->kernel.steps == 0;
     s->model = model_build(&spec->model, a, e);
     if (s->model) s->state = state_make(s->model, &spec->model, a);
     if (s->state) {
         s->nbody = s->model->nbody;
         s->movable = omission_movable(s->model);
-        s->fixed = omission_scene(spec, &s->model, &s->state, a);
+        s->fixed = omission_scene(spec->nrank, keep, &s->model, &s->state, a);
         system_prepare(s->model);
-        s->state->at_rest = omission_job(spec, s->model, s->state).velocity;
+        s->state->at_rest = omission_job(spec, keep, s->model, s->state).velocity;
         return s;
     }
     /* The model was read when the scenario was planned; the file has gone since. */
@@ -79,21 +79,22 @@ static void make_room(struct program_cache *cache, int nbody)
 
 /* A scene depends on the model's description, on what is kept, on whether anything moves, and on
  * how many fixed bodies were merged, which depends on P. Everything else of a spec may differ. */
-struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e)
+struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
+                         struct err *e)
 {
     cache->clock++;
-    for (int i = 0; i < cache->nscene && !(spec->keep & KEEP_SCENES); i++) {
+    for (int i = 0; i < cache->nscene && !(keep & KEEP_SCENES); i++) {
         struct scene *s = cache->scene[i];
         /* P may leave fewer bodies to merge than the cached scene has merged. */
-        if (s->fixed != omission_mergeable(spec, s->nbody, s->movable)) continue;
+        if (s->fixed != omission_mergeable(spec->nrank, keep, s->nbody, s->movable)) continue;
         /* What is at rest now may move after the first time step. */
         if (s->still != (spec->kernel.steps == 0)) continue;
         /* The whole description counts, field by field, so its bytes are compared. */
-        if (s->keep != spec->keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
+        if (s->keep != keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
         s->used = cache->clock;
         return s;
     }
-    struct scene *s = scene_make(spec, e);
+    struct scene *s = scene_make(spec, keep, e);
     if (!s) return NULL;
     /* Only when the new scene exists is an old one given away. */
     make_room(cache, s->model->nbody);

@@ -41,9 +41,11 @@ struct scene {
 struct program_cache *scene_cache_create(void);
 void scene_cache_destroy(struct program_cache *cache);
 
-/* scene_take: the scene that `spec` asks for, from the cache or made now; borrowed until the next
- * call. NULL with *e set when it cannot be built. */
-struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e);
+/* scene_take: the scene that `spec` asks for, with what `keep` (KEEP_* of the order) puts back,
+ * from the cache or made now; borrowed until the next call. NULL with *e set when it cannot be
+ * built. */
+struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
+                         struct err *e);
 
 /* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler.
  * scene_forward: accelerations by `method`. Computed at the first call. */

@@ -49,7 +49,7 @@ double trust_condition(const struct program_run *r)
 static const char *remedy(const struct kernel_job *job)
 {
     const struct kernel_spec *k = &job->spec->kernel;
-    const bool tree = kernel_branches(job->spec, job->model);
+    const bool tree = kernel_branches(job->model, &job->omit);
     const bool refines = k->refinement == REFINEMENT_AS_GIVEN && (tree || k->solver != SOLVER_PCR);
     const bool unstable =
         k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
@@ -100,13 +100,13 @@ static bool refine_more(struct kernel_spec *k, bool inner, bool twice)
     return true;
 }
 
-bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out)
+bool trust_refine(struct run_spec *spec, const struct model *m, const struct job_omit *omit,
+                  const struct run_result *out)
 {
     struct kernel_spec *k = &spec->kernel;
     const bool enough = out->residual <= may_be(k, m->nbody); /* false for what is no number */
-    const bool keeps_factors = k->solver != SOLVER_PCR || kernel_branches(spec, m);
+    const bool chain = !kernel_branches(m, omit), keeps_factors = k->solver != SOLVER_PCR || !chain;
     if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
-    const bool chain = !kernel_branches(spec, m);
     return refine_more(k, chain || !kernel_spec_implicit(k),
                        chain && k->formulation == FORMULATION_DIRECT);
 }

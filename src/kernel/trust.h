@@ -23,11 +23,12 @@ double trust_residual(const struct program_run *r);
  * number. */
 double trust_condition(const struct program_run *r);
 
-/* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, when that is
- * too much: one inner, then one outer; then open chains in the direct formulation get their
- * residual in twice the digits with four inner ones and with twenty, others up to four outer ones.
- * Linearly implicit steps of trees have no inner ones. False: none is needed, none is left, or the
- * settings forbid it; *spec is then unchanged. */
-bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out);
+/* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, of which it
+ * left out `omit`, when that is too much: one inner, then one outer; then open chains in the direct
+ * formulation get their residual in twice the digits with four inner ones and with twenty, others
+ * up to four outer ones. Linearly implicit steps of trees have no inner ones. False: none is
+ * needed, none is left, or the settings forbid it; *spec is then unchanged. */
+bool trust_refine(struct run_spec *spec, const struct model *m, const struct job_omit *omit,
+                  const struct run_result *out);
 
 #endif

@@ -5,11 +5,12 @@
  * settings, scenes, outputs and references; it is one `const struct program_type` and a line in a
  * table (kernel/programs.c). Life of a run:
  *
- *     open      the scene and the settings are looked at: can the program run them, and with which
- * text? prepare   room for the outputs, tables that all ranks share (the ranks run) judge     what
- * the program saw itself: may the answer be believed? again     other settings, where the answer
- * asks for them: back to prepare check     the outputs against independent references; baselines:
- * serial codes for the same task
+ *     open     the scene and the settings are looked at: can the program run them, with which text?
+ *     prepare  room for the outputs, tables that all ranks share
+ *              (the ranks run)
+ *     judge    what the program saw itself: may the answer be believed?
+ *     again    other settings, where the answer asks for them: back to prepare
+ *     check    the outputs against independent references; baselines: serial codes of the task
  *
  * `estimate` and `leave_out` need no more than open. */
 #ifndef PROGRAM_PROGRAM_H
@@ -48,9 +49,7 @@ struct program_run {
     const struct program_type *type;
     struct run_spec spec; /* the settings in force, a copy: `again` may change those of the program,
                              so it may be another run than the one that its config_hash names */
-    struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere */
-    const struct hosts *hosts; /* as in run_order, as the next ones */
-    int threads, cores, job_run;
+    struct run_order order;      /* how it is executed, a copy; job_run counts its attempts, too */
     struct program_cache *cache; /* what runs share; NULL: nothing */
     struct arena *arena;         /* memory of open: lives as long as this struct */
 

@@ -94,7 +94,7 @@ static bool open_members(struct group *g, struct program_run *r, struct arena *s
         if (!open_member(g, i, r, e)) return false;
     }
     g->member[g->own] = (struct member){.runs = true, .run = r, .scratch = scratch, .arena = a,
-                                        .out = out, .record = omission_record(&r->spec)};
+                                        .out = out, .record = omission_record(&r->spec, r->order.keep)};
     /* Each attempt starts from here: a program that asks for many keeps the memory of one. */
     for (int i = 0; i < g->set->n; i++) {
         struct member *m = &g->member[i];
@@ -125,7 +125,7 @@ static bool prepare(struct group *g, struct err *e)
 static bool launch(struct group *g, struct arena *world, struct err *e)
 {
     const struct program_run *r = g->member[g->own].run;
-    const struct machine_spec machine = omission_machine(&r->spec);
+    const struct machine_spec machine = omission_machine(&r->spec, r->order.keep);
     struct launch_job job[JOB_MOST];
     for (int i = 0; i < g->set->n; i++) {
         const struct member *m = &g->member[i];
@@ -148,7 +148,7 @@ static bool launch(struct group *g, struct arena *world, struct err *e)
         job[i].out = m->out;
     }
     /* The traffic of strangers is the same whichever job is looked at. */
-    return launch_jobs(job, g->set->n, &machine, job[0].seed, r->heartbeat, world, e);
+    return launch_jobs(job, g->set->n, &machine, job[0].seed, r->order.heartbeat, world, e);
 }
 
 /* Whether one of the programs asks for one more attempt; all of them judge. */
@@ -175,7 +175,8 @@ bool beside_attempts(struct program_run *r, struct arena *scratch, struct arena 
                        "what binds a run is found for a program that has its machine alone, and "
                        "job '%s' shares it; take the scenario without 'jobs'",
                        r->spec.job.name);
-    if (r->hosts && r->hosts->rank > 0) return true; /* what processes cannot share, one does */
+    /* What processes cannot share, one does. */
+    if (r->order.hosts && r->order.hosts->rank > 0) return true;
     /* Of the heap: 64 members are too many for a stack. */
     struct group *g = memory_zeroed(1, sizeof *g);
     g->set = r->spec.jobs;
@@ -186,7 +187,7 @@ bool beside_attempts(struct program_run *r, struct arena *scratch, struct arena 
     bool ok = open_members(g, r, scratch, a, out, e);
     do ok = ok && prepare(g, e) && launch(g, world, e);
     while (ok && once_more(g));
-    if (r->threads > 1 || r->hosts)
+    if (r->order.threads > 1 || r->order.hosts)
         text_copy(out->alone, sizeof out->alone, "several jobs share the machine");
     close_members(g);
     free(g);

@@ -55,7 +55,7 @@ static struct world_load load_of(const struct program_run *r, int64_t largest)
                                .largest_message = largest,
                                .output = r->output,
                                .noutput = PROGRAM_OUTPUTS,
-                               .heartbeat = r->heartbeat,
+                               .heartbeat = r->order.heartbeat,
                                .name = r->type->name,
                                .stack_bytes = r->rank->stack_bytes,
                                .timed = r->rank->timed,
@@ -110,12 +110,13 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.working_set = working_set(r);
     if (!load.foreign && !rank_stack_set(&load, e)) return false;
     const char *alone = world_alone(m, &load, record);
-    load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
+    load.threads = alone ? 1 : launch_threads(r->order.threads, r->order.cores, load.nrank);
     out->threads = load.threads;
-    if (alone && (r->threads > 1 || r->hosts)) text_copy(out->alone, sizeof out->alone, alone);
+    if (alone && (r->order.threads > 1 || r->order.hosts))
+        text_copy(out->alone, sizeof out->alone, alone);
     /* What processes cannot share, the first one does. */
-    if (alone && r->hosts && r->hosts->rank > 0) return true;
-    if (!alone) load.hosts = r->hosts, load.job_run = r->job_run;
+    if (alone && r->order.hosts && r->order.hosts->rank > 0) return true;
+    if (!alone) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
     struct launch l = {r->rank, r->job, make_workspaces(r, &load, scratch)};
     load.context = &l;
     if (!world_run(m, &load, record, seed, a, out, e)) return false;

@@ -1,7 +1,7 @@
 /* omission.c - see omission.h.
  *
  * What this room leaves out is exact (bound 0): no simulated time and no result depends on it.
- * The bits of spec.keep undo one at a time, which `explain --measure` uses to show that. */
+ * The bits of run_order.keep undo one at a time, which `explain --measure` uses to show that. */
 #include "run/omission.h"
 
 #include "run/launch.h"
@@ -9,24 +9,23 @@
 /* Without a known largest message every send gets an event of its own. */
 int64_t omission_largest_message(const struct program_run *r)
 {
-    return r->spec.keep & KEEP_START_EVENTS ? -1 : launch_largest_message(r);
+    return r->order.keep & KEEP_START_EVENTS ? -1 : launch_largest_message(r);
 }
 
 /* Undone, level auto simulates every route as level packet does. */
-struct machine_spec omission_machine(const struct run_spec *spec)
+struct machine_spec omission_machine(const struct run_spec *spec, unsigned keep)
 {
     struct machine_spec m = spec->machine;
-    if ((spec->keep & KEEP_CONTENTION) && m.network.level == LEVEL_AUTO)
-        m.network.level = LEVEL_PACKET;
+    if ((keep & KEEP_CONTENTION) && m.network.level == LEVEL_AUTO) m.network.level = LEVEL_PACKET;
     return m;
 }
 
 /* Undone, everything is recorded whether or not it is asked for. */
-struct record_spec omission_record(const struct run_spec *spec)
+struct record_spec omission_record(const struct run_spec *spec, unsigned keep)
 {
     struct record_spec r = spec->record;
-    if (spec->keep & KEEP_SPANS) r.spans = true;
-    if (spec->keep & KEEP_LINKS) r.links = true;
+    if (keep & KEEP_SPANS) r.spans = true;
+    if (keep & KEEP_LINKS) r.links = true;
     return r;
 }
 
@@ -52,7 +51,7 @@ int omission_listing(const struct program_run *r, struct omission *out)
 {
     /* bound 0: exact */
     const struct run_spec *spec = &r->spec;
-    struct left_out l = {spec->keep, out, 0};
+    struct left_out l = {r->order.keep, out, 0};
     if (r->type->leave_out) r->type->leave_out(r, &l);
     list_starts(r, &l);
     if (spec->machine.network.level == LEVEL_AUTO)

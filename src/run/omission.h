@@ -15,10 +15,10 @@
  * how many. */
 int omission_listing(const struct program_run *r, struct omission *out);
 
-/* omission_largest_message, omission_machine, omission_record: what the world is told, with
- * spec->keep obeyed. */
+/* omission_largest_message, omission_machine, omission_record: what the world is told; `keep` of
+ * the order (KEEP_*) is put back. */
 int64_t omission_largest_message(const struct program_run *r);
-struct machine_spec omission_machine(const struct run_spec *spec);
-struct record_spec omission_record(const struct run_spec *spec);
+struct machine_spec omission_machine(const struct run_spec *spec, unsigned keep);
+struct record_spec omission_record(const struct run_spec *spec, unsigned keep);
 
 #endif

@@ -52,13 +52,10 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
               struct arena *a, struct program_run *r, struct err *e)
 {
     *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
-    /* How a run is executed is no part of its identity: an order changes this copy of the
-     * settings only. */
-    if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
-    if (order) r->threads = order->threads, r->cores = order->cores;
-    if (order) r->hosts = order->hosts, r->job_run = order->job_run * MOST_ATTEMPTS;
-    if (order)
-        r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
+    /* How a run is executed is no part of what it is: an order changes no setting. Attempts of one
+     * run have numbers that no other run's have. */
+    if (order) r->order = *order;
+    r->order.job_run *= MOST_ATTEMPTS;
     if (!r->type && spec->kernel.own)
         return err_set(e, ERR_CONFIG,
                        "program '%s' is not at hand: only a scenario says where it is",

@@ -60,13 +60,14 @@ static bool lost(struct real *r, struct err *e)
  * The ranks once. `judged`: its answer is gathered and checked. */
 static bool repeat(struct real *r, bool judged, struct err *e)
 {
+    static const struct run_order order = {.real = true};
     struct arena *own = arena_create(), *scratch = arena_create();
     struct program_run run = {.spec = r->own};
     struct host_times times;
     bool left = false;
     /* Everything anew, as for a first run: images of people's programs, outputs, tables. */
     bool ok =
-        run_open(&r->own, NULL, r->cache, own, &run, e) && run.type->prepare(&run, scratch, e);
+        run_open(&r->own, &order, r->cache, own, &run, e) && run.type->prepare(&run, scratch, e);
     if (ok) {
         const struct rank_program *p = run.rank;
         const int rank = r->hosts != NULL ? r->hosts->rank : 0;
@@ -298,7 +299,6 @@ bool run_real(const struct run_spec *spec, const struct hosts *hosts, struct hos
     host_processor_name(out->processor, (int)sizeof out->processor);
     if (spec->refused) return err_set(e, (enum err_kind)spec->refused_kind, "%s", spec->refused);
     if (!refuse(spec, processes, e)) return false;
-    r.own.program.cost = PROGRAM_COST_REAL;
     r.facts = memory_zeroed((size_t)processes * FACTS, sizeof *r.facts);
     bool ok = real_simulate(&r, e);
     if (ok && out->status == RUN_OK) ok = measure(&r, order, a, e);

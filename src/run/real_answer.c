@@ -43,7 +43,6 @@ static bool simulate(struct real *r, struct kernel_spec *settled, struct err *e)
     struct program_run run = {.spec = r->own};
     struct run_spec spec = r->own;
     spec.machine.network.level = LEVEL_LOGGP;
-    spec.program.cost = r->spec->program.cost;
     bool ok =
         run_open(&spec, NULL, cache, own, &run, e) && run_attempts(&run, cache, own, result, e);
     if (ok && result->status == RUN_OK) {

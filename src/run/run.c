@@ -24,15 +24,15 @@ enum { TAG_VERDICT = 400 };
 enum { KEPT_BYTES = 64 << 20 };
 
 /* Whether this process has the whole result: only one of those that share a run does. */
-static bool chief(const struct program_run *r) { return !r->hosts || r->hosts->rank == 0; }
+static bool chief(const struct program_run *r) { return !r->order.hosts || r->order.hosts->rank == 0; }
 
 /* The ranks once, with the settings that are in force now. */
 static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
                     struct run_result *out, struct err *e)
 {
     /* What --keep-all and `explain --measure` undo acts here: the spec itself stays as it is. */
-    const struct machine_spec machine = omission_machine(&r->spec);
-    const struct record_spec record = omission_record(&r->spec);
+    const struct machine_spec machine = omission_machine(&r->spec, r->order.keep);
+    const struct record_spec record = omission_record(&r->spec, r->order.keep);
     memset(out, 0, sizeof *out);
     out->residual = out->measured_s = NAN;
     if (!r->type->prepare(r, c->scratch, e)) return false;
@@ -54,13 +54,13 @@ static bool once_more(struct program_run *r, struct run_result *out)
         struct kernel_spec kernel;
     } verdict = {.more = chief(r) && r->type->again && r->type->again(r, out),
                  .kernel = r->spec.kernel};
-    if (!r->hosts || out->job_broken) return verdict.more;
-    if (!hosts_tell(r->hosts, TAG_VERDICT, &verdict, sizeof verdict)) {
+    if (!r->order.hosts || out->job_broken) return verdict.more;
+    if (!hosts_tell(r->order.hosts, TAG_VERDICT, &verdict, sizeof verdict)) {
         out->job_broken = true;
         return false;
     }
     r->spec.kernel = verdict.kernel;
-    r->job_run++;
+    r->order.job_run++;
     return verdict.more;
 }
 
@@ -260,8 +260,8 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->bytes = k.bytes;
         out->flops = k.flops;
         out->nomission = omission_listing(&r, out->omission);
-        const struct machine_spec machine = omission_machine(spec);
-        const struct record_spec record = omission_record(spec);
+        const struct machine_spec machine = omission_machine(spec, r.order.keep);
+        const struct record_spec record = omission_record(spec, r.order.keep);
         out->alone = launch_alone(&r, &machine, &record, omission_largest_message(&r));
         out->threads = out->alone ? 1 : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank);
         out->nunused = r.type->unused ? r.type->unused(&r, out->unused) : 0;

@@ -27,7 +27,7 @@ enum program_cost {
     PROGRAM_COST_BLOCKS,   /* executed blocks of machine code, as the compiler counted them */
     PROGRAM_COST_AUTHOR,   /* what the program states that it costs */
     PROGRAM_COST_HOST,     /* the time that this computer took: another one in every run */
-    PROGRAM_COST_REAL      /* it takes its time, which nobody counts: no setting, for real runs */
+    PROGRAM_COST_REAL      /* it takes its time, which nobody counts: no setting (run_order.real) */
 };
 
 /* What becomes of the lines that ranks write. */
@@ -48,12 +48,10 @@ struct program_spec {
     enum program_kind kind;
     char hash[65];          /* SHA-256 of the image, or of source, compiler and flags; "": none */
     const char *parameters; /* "NAME = VALUE" lines in the order declared, borrowed; NULL: none */
-    enum program_output output; /* of the order */
-    double host_limit;      /* of the order: processor time after which a run has failed [s] */
     const char *image;      /* the file to be loaded, borrowed; NULL: not known */
 };
 
-enum { PROGRAM_HOST_LIMIT = 600 }; /* where host_limit is 0 [s] */
+enum { PROGRAM_HOST_LIMIT = 600 }; /* where run_order.host_limit is 0 [s] */
 
 /* What a program declares, read from its image before any of its code runs. */
 struct program_sheet {

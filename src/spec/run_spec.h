@@ -68,6 +68,8 @@ enum { RUN_THREADS_AUTO = -1 };
  * none of it changes a result. All zero: as usual. */
 struct run_order {
     unsigned keep;                   /* KEEP_*: what is computed although nothing asks for it */
+    /* on this computer for real: nobody counts what computing costs, and no monitor computes */
+    bool real;
     /* where the run tells how far it is, NULL: nowhere; borrowed */
     struct run_heartbeat *heartbeat;
     enum program_output output;      /* of people's own programs: their lines */
@@ -110,8 +112,7 @@ struct run_spec {
     const char *called;
     /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
     const char *refused;
-    int refused_kind;        /* err_kind of that */
-    unsigned keep; /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */
+    int refused_kind; /* err_kind of that */
 };
 
 /* run_spec_defaults: every setting at its default, all else zero; lists in `a`. */

@@ -93,7 +93,7 @@ static void planar_rung(struct ladder *l, const double *reference)
     err_clear(&e);
     /* The planar code applies only where the parallel kernel would choose it by itself
      * (omission.h). */
-    const struct kernel_type *kernel = omission_kernel(&l->spec, l->model, l->state, &e);
+    const struct kernel_type *kernel = omission_kernel(&l->spec, 0, l->model, l->state, &e);
     if (!kernel || !kernel->planar) return;
     double *qdd = TAKE(l->arena, l->model->nu, double);
     struct accuracy_rung *r = ladder_add(l, "serial planar aba", "double", "qdd", reference_name);

@@ -209,8 +209,9 @@ static struct trial variant_trial(const struct judge *j, const struct variant *v
     /* Passes cost time in proportion to the bodies. */
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
+    static const struct job_omit nothing;
     struct trial t = trial_run(&spec, j->m, j->s, j->a);
-    while (trust_refine(&spec, j->m, &(struct run_result){.residual = t.residual}))
+    while (trust_refine(&spec, j->m, &nothing, &(struct run_result){.residual = t.residual}))
         t = trial_run(&spec, j->m, j->s, j->a);
     return t;
 }

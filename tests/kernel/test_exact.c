@@ -103,7 +103,7 @@ static void it_is_refused_where_it_does_not_exist(void **state)
         if (k == 1) s.model.generator = MODEL_COMB;
         const struct model *m = model_build(&s.model, a, &e);
         assert_non_null(m);
-        assert_true(kernel->accepts(&s, m, &e) == (k == 2));
+        assert_true(kernel->accepts(&(struct kernel_job){.spec = &s, .model = m}, &e) == (k == 2));
         if (k < 2) assert_non_null(strstr(e.text, "residual: twice"));
     }
     arena_destroy(a);

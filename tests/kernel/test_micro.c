@@ -66,15 +66,16 @@ static void collectives_are_as_announced(void **state)
                     struct program_estimate wanted;
                     struct arena *a = arena_create();
                     strcpy(s.kernel.algorithm, i < 0 ? "auto" : row[i].name);
-                    if (micro(names[k])->accepts(&s, NULL, &e)) {
+                    if (micro(names[k])->accepts(&(struct kernel_job){.spec = &s}, &e)) {
                         const struct evaluation v = evaluate(&s, a);
                         micro(names[k])->estimate(&s, NULL, NULL, &wanted);
                         assert_int_equal(v.counts.messages, (int64_t)wanted.messages);
                         assert_int_equal(v.counts.bytes, (int64_t)wanted.bytes);
                         assert_int_equal(v.counts.stage_work[0].flop, (uint64_t)wanted.flops);
-                    } else assert_non_null(strstr(e.text, i >= 0 && !strcmp(row[i].name, "hardware")
-                                                                  ? "by 'hardware'"
-                                                                  : "it needs"));
+                    } else
+                        assert_non_null(strstr(e.text, i >= 0 && !strcmp(row[i].name, "hardware")
+                                                           ? "by 'hardware'"
+                                                           : "it needs"));
                     arena_destroy(a);
                 }
             }
@@ -134,24 +135,24 @@ static void what_makes_no_sense_is_refused(void **state)
     (void)state;
     struct err e = {0};
     struct run_spec s = evaluation_spec("pingpong", 1, 1);
-    assert_false(micro("pingpong")->accepts(&s, NULL, &e));
+    assert_false(micro("pingpong")->accepts(&(struct kernel_job){.spec = &s}, &e));
     assert_int_equal(e.kind, ERR_CONFIG);
     err_clear(&e);
     s.nrank = 3;
-    assert_false(micro("bisection")->accepts(&s, NULL, &e));
+    assert_false(micro("bisection")->accepts(&(struct kernel_job){.spec = &s}, &e));
     assert_null(micro("ping"));
     err_clear(&e);
     s = evaluation_spec("alltoall", 1, 3);
     strcpy(s.kernel.algorithm, "xor");
-    assert_false(micro("alltoall")->accepts(&s, NULL, &e));
+    assert_false(micro("alltoall")->accepts(&(struct kernel_job){.spec = &s}, &e));
     assert_non_null(strstr(e.text, "power of two"));
     err_clear(&e);
     s = evaluation_spec("broadcast", 1, 3);
     s.kernel.root = 3;
-    assert_false(micro("broadcast")->accepts(&s, NULL, &e));
+    assert_false(micro("broadcast")->accepts(&(struct kernel_job){.spec = &s}, &e));
     err_clear(&e);
     s.kernel.ring_ranks = 1;
-    assert_false(micro("ring")->accepts(&s, NULL, &e));
+    assert_false(micro("ring")->accepts(&(struct kernel_job){.spec = &s}, &e));
 }
 
 static void expect_complete(const struct kernel_type *t, const char *name)

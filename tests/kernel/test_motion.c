@@ -222,7 +222,7 @@ static void implicit_steps_are_refused_where_they_do_not_exist(void **state)
         s.kernel.inner_refinements = k == 2;
         const struct model *m = model_build(&s.model, a, &e);
         assert_non_null(m);
-        assert_false(kernel->accepts(&s, m, &e));
+        assert_false(kernel->accepts(&(struct kernel_job){.spec = &s, .model = m}, &e));
         assert_int_equal(e.kind, ERR_CONFIG);
         assert_non_null(strstr(e.text, "linearly implicit"));
     }

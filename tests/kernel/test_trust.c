@@ -228,6 +228,9 @@ static const struct {
      {{1, 0, 0}, {1, 1, 0}, {4, 1, RESIDUAL_TWICE}, {20, 1, RESIDUAL_TWICE}}},
 };
 
+/* All of the model is computed. */
+static const struct job_omit nothing;
+
 static void refinements_are_tried_in_their_order(void **state)
 {
     (void)state;
@@ -243,9 +246,9 @@ static void refinements_are_tried_in_their_order(void **state)
         spec.model.generator = attempts[i].chain ? MODEL_SERIAL_CHAIN : MODEL_COMB;
         for (int k = 0; k <= attempts[i].n; k++) {
             const struct run_spec before = spec;
-            assert_false(trust_refine(&spec, &m, &good));
+            assert_false(trust_refine(&spec, &m, &nothing, &good));
             assert_memory_equal(&spec, &before, sizeof spec);
-            const bool more = trust_refine(&spec, &m, k % 2 ? &none : &poor);
+            const bool more = trust_refine(&spec, &m, &nothing, k % 2 ? &none : &poor);
             if (more != (k < attempts[i].n)) fail_msg("case %zu: %d attempts", i, k);
             if (!more) {
                 assert_memory_equal(&spec, &before, sizeof spec);
@@ -268,26 +271,26 @@ static void settings_may_forbid_refinements(void **state)
     const struct run_result poor = {.residual = 1};
     spec.kernel.formulation = FORMULATION_DIRECT;
     spec.kernel.refinement = REFINEMENT_AS_GIVEN;
-    assert_false(trust_refine(&spec, &chain, &poor));
+    assert_false(trust_refine(&spec, &chain, &nothing, &poor));
     spec.kernel.refinement = REFINEMENT_AS_NEEDED;
     spec.kernel.solver = SOLVER_PCR; /* keeps no factors */
-    assert_false(trust_refine(&spec, &chain, &poor));
+    assert_false(trust_refine(&spec, &chain, &nothing, &poor));
     spec.model.generator = MODEL_STAR; /* but trees use no solver */
     const struct model star = {.nbody = 10};
-    assert_true(trust_refine(&spec, &star, &poor));
+    assert_true(trust_refine(&spec, &star, &nothing, &poor));
     /* more than was asked for is kept */
     spec = (struct run_spec){.nrank = 2};
     spec.kernel.formulation = FORMULATION_DIRECT;
     spec.kernel.inner_refinements = 7, spec.kernel.outer_refinements = 2;
-    assert_true(trust_refine(&spec, &chain, &poor));
+    assert_true(trust_refine(&spec, &chain, &nothing, &poor));
     assert_int_equal(spec.kernel.inner_refinements, 7);
     assert_int_equal(spec.kernel.residual, RESIDUAL_TWICE);
-    assert_true(trust_refine(&spec, &chain, &poor));
+    assert_true(trust_refine(&spec, &chain, &nothing, &poor));
     assert_int_equal(spec.kernel.inner_refinements, 20);
-    assert_false(trust_refine(&spec, &chain, &poor));
+    assert_false(trust_refine(&spec, &chain, &nothing, &poor));
     /* residuals in twice the digits need no outer refinement */
     spec.kernel.inner_refinements = 4, spec.kernel.outer_refinements = 0;
-    assert_true(trust_refine(&spec, &chain, &poor));
+    assert_true(trust_refine(&spec, &chain, &nothing, &poor));
     assert_true(spec.kernel.inner_refinements == 20 && spec.kernel.outer_refinements == 0);
 }
 

@@ -135,20 +135,21 @@ static void keep_answer(const struct program_run *r, const struct run_result *re
     memcpy(v->finish_ps, result->finish_ps, (size_t)r->spec.nrank * sizeof(int64_t));
 }
 
-/* answer_of: the spec's run with what spec->keep says; false: the kernel does not do such scenes.
+/* answer_of: the spec's run with what `keep` puts back; false: the kernel does not do such scenes.
  * `left_out` (may be NULL): what it leaves out. */
-static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v,
+static bool answer_of(const struct run_spec *spec, unsigned keep, struct arena *a, struct answer *v,
                       struct omission *left_out, int *n)
 {
+    const struct run_order order = {.keep = keep};
     struct err e = {0};
     struct run_cache *cache = run_cache_create();
     struct program_run r;
     struct run_result *result = TAKE(a, 1, struct run_result);
-    const bool done = run_open(spec, NULL, cache, a, &r, &e) && r.type->prepare(&r, a, &e);
+    const bool done = run_open(spec, &order, cache, a, &r, &e) && r.type->prepare(&r, a, &e);
     if (done) {
         if (left_out) *n = omission_listing(&r, left_out);
-        const struct machine_spec machine = omission_machine(spec);
-        const struct record_spec record = omission_record(spec);
+        const struct machine_spec machine = omission_machine(spec, keep);
+        const struct record_spec record = omission_record(spec, keep);
         if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), a, NULL, a, result,
                         &e))
             fail_msg("%s", e.text);
@@ -243,20 +244,18 @@ static int try_scene(int number, struct tally *tally)
     int n = 0;
     double bounds = 0;
     unsigned put_back = 0;
-    const bool does = answer_of(&spec, a, &lean, left_out, &n);
+    const bool does = answer_of(&spec, 0, a, &lean, left_out, &n);
     for (int i = 0; does && i < n; i++) {
         count(tally, &left_out[i]);
         bounds += left_out[i].bound;
         put_back |= left_out[i].keep;
         if (left_out[i].keep == 0) continue;
-        spec.keep = left_out[i].keep;
-        if (!answer_of(&spec, a, &full, NULL, NULL))
+        if (!answer_of(&spec, left_out[i].keep, a, &full, NULL, NULL))
             fail_msg("scene %d: refused with %s", number, left_out[i].what);
         held_against(number, &spec, &lean, &full, left_out[i].what, left_out[i].bound,
                      left_out[i].keep);
     }
-    spec.keep = KEEP_ALL;
-    if (does && !answer_of(&spec, a, &full, NULL, NULL))
+    if (does && !answer_of(&spec, KEEP_ALL, a, &full, NULL, NULL))
         fail_msg("scene %d: refused with all of them", number);
     if (does) held_against(number, &spec, &lean, &full, "all of them", bounds, put_back);
     arena_destroy(a);
@@ -287,7 +286,7 @@ static void a_changed_digit_is_seen(void **state)
     struct arena *a = arena_create();
     struct run_spec spec = draw(0);
     struct answer v, w;
-    for (int number = 1; !answer_of(&spec, a, &v, NULL, NULL); number++) spec = draw(number);
+    for (int number = 1; !answer_of(&spec, 0, a, &v, NULL, NULL); number++) spec = draw(number);
     w = v;
     assert_true(change(&v, &w) == 0);
     for (int i = 0; i < v.n; i++) {
@@ -312,7 +311,7 @@ static void a_wrong_omission_is_seen(void **state)
         struct answer v, w;
         rest.model.rate = 0;
         if (spec.model.rate > 0 && spec.model.nbody > 2 && spec.model.joint == JOINT_REVOLUTE &&
-            answer_of(&spec, a, &v, NULL, NULL) && answer_of(&rest, a, &w, NULL, NULL)) {
+            answer_of(&spec, 0, a, &v, NULL, NULL) && answer_of(&rest, 0, a, &w, NULL, NULL)) {
             assert_true(change(&v, &w) > 1e-9);
             found++;
         }
@@ -331,8 +330,10 @@ static const struct baseline *baseline_of(const struct run_result *r, const char
 static void serial_codes_left_out_are_never_the_fastest(void **state)
 {
     (void)state;
+    static const struct run_order order = {.keep = KEEP_BASELINE};
     int left_out = 0;
     for (int number = 0; number < 120; number++) {
+        struct run_cache *cache = run_cache_create();
         struct arena *a = arena_create();
         struct run_spec spec = draw(number);
         struct run_result all, needed;
@@ -353,10 +354,10 @@ static void serial_codes_left_out_are_never_the_fastest(void **state)
                 assert_true(same ? same->time_ps == b->time_ps : b->time_ps > fastest->time_ps);
                 left_out += same == NULL;
             }
-            spec.keep = KEEP_BASELINE;
-            assert_true(run_one(&spec, a, &needed, &e));
+            assert_true(run_sharing(&spec, &order, cache, a, &needed, &e));
             assert_int_equal(needed.nbaseline, all.nbaseline);
         }
+        run_cache_destroy(cache);
         arena_destroy(a);
     }
     assert_true(left_out > 40);

@@ -95,20 +95,19 @@ static void bits_put_back_what_is_left_out(void **state)
     static struct run_spec spec;
     memset(&spec, 0, sizeof spec);
     spec.machine.network.level = LEVEL_AUTO;
-    assert_int_equal(omission_machine(&spec).network.level, LEVEL_AUTO);
-    assert_false(omission_record(&spec).spans || omission_record(&spec).links);
-    spec.keep = KEEP_CONTENTION;
-    assert_int_equal(omission_machine(&spec).network.level, LEVEL_PACKET);
+    assert_int_equal(omission_machine(&spec, 0).network.level, LEVEL_AUTO);
+    struct record_spec record = omission_record(&spec, 0);
+    assert_false(record.spans || record.links);
+    assert_int_equal(omission_machine(&spec, KEEP_CONTENTION).network.level, LEVEL_PACKET);
     assert_int_equal(spec.machine.network.level, LEVEL_AUTO); /* a copy */
     spec.machine.network.level = LEVEL_LOGGP;                 /* of level auto alone */
-    assert_int_equal(omission_machine(&spec).network.level, LEVEL_LOGGP);
-    spec.keep = KEEP_SPANS;
-    assert_true(omission_record(&spec).spans && !omission_record(&spec).links);
-    spec.keep = KEEP_LINKS;
-    assert_true(omission_record(&spec).links && !omission_record(&spec).spans);
-    spec.keep = 0;
+    assert_int_equal(omission_machine(&spec, KEEP_CONTENTION).network.level, LEVEL_LOGGP);
+    record = omission_record(&spec, KEEP_SPANS);
+    assert_true(record.spans && !record.links);
+    record = omission_record(&spec, KEEP_LINKS);
+    assert_true(record.links && !record.spans);
     spec.record.spans = true;
-    assert_true(omission_record(&spec).spans);
+    assert_true(omission_record(&spec, 0).spans);
 }
 
 /* A program of one rank whose largest message is as long as its context says. */
@@ -159,7 +158,7 @@ static void what_the_simulator_leaves_out_is_listed(void **state)
     assert_int_equal(out[1].keep, KEEP_CONTENTION);
     /* what is asked for or put back is not left out */
     r.spec.record.spans = r.spec.record.links = true;
-    r.spec.keep = KEEP_CONTENTION | KEEP_START_EVENTS;
+    r.order.keep = KEEP_CONTENTION | KEEP_START_EVENTS;
     assert_int_equal(list(&r, out), 1);
     promised = 7;
     assert_int_equal(omission_largest_message(&r), -1);

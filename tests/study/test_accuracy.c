@@ -153,11 +153,14 @@ static struct run_spec random_spec(uint64_t seed, const struct machine_spec *mac
     return s;
 }
 
-static void run(const struct run_spec *s, struct arena *a, struct run_result *out)
+static void run(const struct run_spec *s, unsigned keep, struct arena *a, struct run_result *out)
 {
+    struct run_cache *cache = run_cache_create();
+    const struct run_order order = {.keep = keep};
     struct err e;
     err_clear(&e);
-    if (!run_one(s, a, out, &e)) fail_msg("%s", e.text);
+    if (!run_sharing(s, &order, cache, a, out, &e)) fail_msg("%s", e.text);
+    run_cache_destroy(cache);
 }
 
 /* To the picosecond, of every stage of every rank. */
@@ -192,13 +195,11 @@ static void nothing_left_out_changes_a_result(void **state)
     for (uint64_t seed = 1; seed <= 40; seed++) {
         struct run_spec s = random_spec(seed, &machine);
         struct run_result without, with, loaded;
-        run(&s, a, &without);
-        s.keep = host;
-        run(&s, a, &with);
+        run(&s, 0, a, &without);
+        run(&s, host, a, &with);
         same_times(&with, &without);
         /* adding zero forces takes the machine time, but changes no number */
-        s.keep = host | KEEP_EXTERNAL;
-        run(&s, a, &loaded);
+        run(&s, host | KEEP_EXTERNAL, a, &loaded);
         assert_int_equal(loaded.status, without.status);
         assert_int_equal(loaded.nerror, without.nerror);
         for (int i = 0; i < without.nerror; i++)
