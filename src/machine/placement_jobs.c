@@ -123,26 +123,11 @@ static void place_randomly(struct filling *f, int i, struct arena *a)
 
 /* ---- groups */
 
-/* Blocks of a grid grow by one dimension at a time, those of a tree by one level. */
+/* A router, what the family knows between, the whole. */
 int placement_groups(const struct topology *t, int64_t *size)
 {
-    const struct topology_spec *s = t->spec;
-    const enum topology_family family = s->family;
-    int n = 0;
-    int64_t block = 1;
-    size[n++] = t->nodes_per_router;
-    if (family == TOPOLOGY_HYPERCUBE) {
-        for (block = t->nodes_per_router; 2 * block <= t->nnode; block *= 2) size[n++] = 2 * block;
-    } else if (family == TOPOLOGY_FAT_TREE) {
-        for (int i = 0; i < s->dims[1]; i++) size[n++] = block *= s->dims[0];
-    } else if (family == TOPOLOGY_FOLDED_CLOS) {
-        for (int i = 0; i < s->ndim; i++) size[n++] = block *= s->dims[i];
-    } else if (family == TOPOLOGY_DRAGONFLY || family == TOPOLOGY_DRAGONFLY_PLUS) {
-        size[n++] = (int64_t)s->dims[0] * s->dims[1];
-    } else if (topology_has(family, TOPOLOGY_GRID) || family == TOPOLOGY_HYPERX) {
-        block = t->nodes_per_router;
-        for (int i = 0; i < s->ndim; i++) size[n++] = block *= s->dims[i];
-    }
+    size[0] = t->nodes_per_router;
+    int n = 1 + topology_parts(t, size + 1);
     size[n++] = t->nnode;
     /* Each size once, and none that does not divide the machine into whole parts. */
     int kept = 0;

@@ -27,7 +27,7 @@ bool placement_create_jobs(struct placement *p, const struct machine_spec *m,
 /* placement_groups: sizes of the parts that a network consists of, in nodes, rising, the whole
  * machine last; parts are blocks of consecutive nodes. Routers; of grids lines, planes and so on;
  * sub-cubes; sub-trees; groups of a dragonfly. Into size (PLACEMENT_LEVELS); returns how many. */
-enum { PLACEMENT_LEVELS = 34 };
+enum { PLACEMENT_LEVELS = TOPOLOGY_PARTS + 2 };
 int placement_groups(const struct topology *t, int64_t *size);
 
 #endif

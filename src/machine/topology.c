@@ -3,6 +3,8 @@
  * Node i hangs on router i / nodes_per_router as its local port i mod nodes_per_router. */
 #include "machine/topology.h"
 
+#include <string.h>
+
 #include "base/check.h"
 #include "machine/topology_failed.h"
 #include "machine/topology_internal.h"
@@ -138,4 +140,35 @@ double topology_link_bandwidth(const struct topology *t, int link, double link_b
     double own = t->type->rate_dim ? t->spec->dim_bandwidth[t->type->rate_dim(t, link)] : 0;
     if (t->type->share) return t->type->share(t, link);
     return own > 0 && link_bandwidth > 0 ? own / link_bandwidth : 1;
+}
+
+/* Counted, then dealt out. */
+struct topology_neighbours topology_neighbours(const struct topology *t, struct arena *a)
+{
+    int *first = TAKE(a, t->nrouter + 1, int), *list = TAKE(a, t->nlink + 1, int), from, to, port;
+    for (int l = 0; l < t->nlink; l++) {
+        topology_link_ends(t, l, &from, &to, &port);
+        first[from + 1] += topology_link_works(t, l);
+    }
+    for (int r = 0; r < t->nrouter; r++) first[r + 1] += first[r];
+    int *next = TAKE(a, t->nrouter, int);
+    memcpy(next, first, (size_t)t->nrouter * sizeof *next);
+    for (int l = 0; l < t->nlink; l++) {
+        topology_link_ends(t, l, &from, &to, &port);
+        if (topology_link_works(t, l)) list[next[from]++] = to;
+    }
+    return (struct topology_neighbours){first, list};
+}
+
+int topology_parts(const struct topology *t, int64_t *size)
+{
+    return t->type->parts ? t->type->parts(t, size) : 0;
+}
+
+/* A block grows by one dimension at a time. */
+int topology_grid_parts(const struct topology *t, int64_t *size)
+{
+    int64_t block = t->nodes_per_router;
+    for (int i = 0; i < t->spec->ndim; i++) size[i] = block *= t->spec->dims[i];
+    return t->spec->ndim;
 }

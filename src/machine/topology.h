@@ -82,6 +82,21 @@ int topology_injection_port(const struct topology *t, int node);
 /* topology_router_of: the router of node `node`. */
 int topology_router_of(const struct topology *t, int node);
 
+/* The routers that the working links of each router lead to, one for each of parallel links, in the
+ * order of their numbers: of router r to[first[r]] .. to[first[r + 1] - 1]. */
+struct topology_neighbours {
+    const int *first, *to;
+};
+
+/* topology_neighbours: of all routers of t, memory from `a`. */
+struct topology_neighbours topology_neighbours(const struct topology *t, struct arena *a);
+
+/* topology_parts: sizes of the parts that the network consists of besides single routers and the
+ * whole, in nodes, as its family knows them; parts are blocks of consecutive nodes. Into size
+ * (TOPOLOGY_PARTS); returns how many. */
+enum { TOPOLOGY_PARTS = 32 };
+int topology_parts(const struct topology *t, int64_t *size);
+
 /* topology_link_works, topology_router_works: whether nothing of network.failed says otherwise. A
  * route never meets what does not work; no node of such a router may take part in one.
  * topology_whole: everything works. */

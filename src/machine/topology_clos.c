@@ -190,6 +190,14 @@ static void clos_ends(const struct topology *t, int link, int *from, int *to, in
                     : (l > 0 ? g->m[l] * g->b[l - 1] : 0) + u * g->b[l] + cable;
 }
 
+/* Sub-trees. */
+static int clos_parts(const struct topology *t, int64_t *size)
+{
+    int64_t block = 1;
+    for (int i = 0; i < t->spec->ndim; i++) size[i] = block *= t->spec->dims[i];
+    return t->spec->ndim;
+}
+
 const struct topology_type topology_folded_clos = {
     .name = "folded-clos",
     .create = clos_create,
@@ -198,4 +206,5 @@ const struct topology_type topology_folded_clos = {
     .distance = clos_distance,
     .ends = clos_ends,
     .rate_dim = clos_rate_dim,
+    .parts = clos_parts,
 };

@@ -249,6 +249,7 @@ const struct topology_type topology_express_mesh = {
     .distance = express_distance,
     .ends = express_ends,
     .rate_dim = express_rate_dim,
+    .parts = topology_grid_parts,
 };
 const struct topology_type topology_express_torus = {
     .name = "express-torus",
@@ -258,4 +259,5 @@ const struct topology_type topology_express_torus = {
     .distance = express_distance,
     .ends = express_ends,
     .rate_dim = express_rate_dim,
+    .parts = topology_grid_parts,
 };

@@ -365,6 +365,7 @@ bool topology_fail(struct topology *t, int64_t kept_bytes, struct arena *a, stru
                                    .ends = failed_ends,
                                    .rate_dim = whole->type->rate_dim ? failed_rate_dim : NULL,
                                    .share = whole->type->share ? failed_share : NULL,
+                                   .parts = whole->type->parts,
                                    .link_works = failed_link_works,
                                    .router_works = failed_router_works};
     int around = longest_way(f);

@@ -116,6 +116,15 @@ static int64_t hypercube_bisection(const struct topology *t)
     return half * (1 + g->doubled + g->diagonal);
 }
 
+/* Sub-cubes. */
+static int hypercube_parts(const struct topology *t, int64_t *size)
+{
+    int n = 0;
+    for (int64_t block = t->nodes_per_router; 2 * block <= t->nnode; block *= 2)
+        size[n++] = 2 * block;
+    return n;
+}
+
 const struct topology_type topology_hypercube = {
     .name = "hypercube",
     .create = hypercube_create,
@@ -125,4 +134,5 @@ const struct topology_type topology_hypercube = {
     .ends = hypercube_ends,
     .rate_dim = hypercube_rate_dim,
     .bisection = hypercube_bisection,
+    .parts = hypercube_parts,
 };

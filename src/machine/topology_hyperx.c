@@ -174,4 +174,5 @@ const struct topology_type topology_hyperx = {
     .ends = hyperx_ends,
     .rate_dim = hyperx_rate_dim,
     .bisection = hyperx_bisection,
+    .parts = topology_grid_parts,
 };

@@ -23,9 +23,15 @@ struct topology_type {
     /* NULL: all do */
     bool (*link_works)(const struct topology *t, int link);
     bool (*router_works)(const struct topology *t, int router);
+    /* topology_parts; NULL: there are none */
+    int (*parts)(const struct topology *t, int64_t *size);
     /* cables between two halves of the nodes, -1: no closed form for these numbers; NULL: never */
     int64_t (*bisection)(const struct topology *t);
 };
+
+/* topology_grid_parts: `parts` of families whose routers have coordinates: lines, planes and so on.
+ */
+int topology_grid_parts(const struct topology *t, int64_t *size);
 
 /* Every family's own. */
 #define X(constant, word, stem, ndim, routers, traits)                                             \

@@ -15,7 +15,7 @@ enum { ALL_SOURCES = 4096, SAMPLED_SOURCES = 64, ROUTE_PAIRS = 1 << 22 };
 
 struct survey {
     const struct topology *t;
-    int *first, *to; /* neighbours of router r: to[first[r]] .. to[first[r+1] - 1] */
+    const int *first, *to; /* topology_neighbours */
     int *distance, *queue;
     double *ways; /* shortest ways from the source */
     int *nodes;   /* (nrouter) */
@@ -23,30 +23,14 @@ struct survey {
 
 static struct survey survey_make(const struct topology *t, struct arena *a)
 {
-    struct survey s = {.t = t, .first = TAKE(a, t->nrouter + 1, int)};
-    int from, to, port, *next = TAKE(a, t->nrouter, int);
-    s.to = TAKE(a, t->nlink + 1, int);
+    const struct topology_neighbours near = topology_neighbours(t, a);
+    struct survey s = {.t = t, .first = near.first, .to = near.to};
     s.distance = TAKE(a, t->nrouter, int);
     s.queue = TAKE(a, t->nrouter, int);
     s.ways = TAKE(a, t->nrouter, double);
     s.nodes = TAKE(a, t->nrouter, int);
     for (int i = 0; i < t->nnode; i++)
         s.nodes[topology_router_of(t, i)] += topology_router_works(t, topology_router_of(t, i));
-    /* Counted, then dealt out. */
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &to, &port);
-        if (!topology_link_works(t, l)) continue;
-        s.first[from + 1]++;
-    }
-    for (int r = 0; r < t->nrouter; r++) {
-        s.first[r + 1] += s.first[r];
-        next[r] = s.first[r];
-    }
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &to, &port);
-        if (!topology_link_works(t, l)) continue;
-        s.to[next[from]++] = to;
-    }
     return s;
 }
 

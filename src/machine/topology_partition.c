@@ -19,7 +19,7 @@ enum {
 struct cut {
     const struct topology *t;
     int n;
-    int *first, *to; /* neighbours of router r: to[first[r]] .. to[first[r+1] - 1] */
+    const int *first, *to; /* topology_neighbours */
     int *weight;     /* (n) nodes on each router */
     int largest;     /* of the weights */
     bool *half;      /* (n) */
@@ -28,29 +28,6 @@ struct cut {
     int *gain, *order, *moved;
     bool *locked;
 };
-
-/* Links as lists of neighbours: counted, then dealt out. */
-static void neighbours(struct cut *c, struct arena *a)
-{
-    const struct topology *t = c->t;
-    int from, to, port, *next = TAKE(a, c->n, int);
-    c->first = TAKE(a, c->n + 1, int);
-    c->to = TAKE(a, t->nlink + 1, int);
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &to, &port);
-        if (!topology_link_works(t, l)) continue;
-        c->first[from + 1]++;
-    }
-    for (int r = 0; r < c->n; r++) {
-        c->first[r + 1] += c->first[r];
-        next[r] = c->first[r];
-    }
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &to, &port);
-        if (!topology_link_works(t, l)) continue;
-        c->to[next[from]++] = to;
-    }
-}
 
 /* The size and every router's gain of the present halves: a router's gain is how many of its links
  * cross less those that do not. */
@@ -177,7 +154,9 @@ static struct cut cut_make(const struct topology *t, struct arena *a)
         int weight = ++c.weight[topology_router_of(t, i)];
         if (weight > c.largest) c.largest = weight;
     }
-    neighbours(&c, a);
+    const struct topology_neighbours near = topology_neighbours(t, a);
+    c.first = near.first;
+    c.to = near.to;
     return c;
 }
 

@@ -228,6 +228,7 @@ const struct topology_type topology_torus = {
     .ends = torus_ends,
     .rate_dim = torus_rate_dim,
     .bisection = torus_bisection,
+    .parts = topology_grid_parts,
 };
 const struct topology_type topology_mesh = {
     .name = "mesh",
@@ -238,4 +239,5 @@ const struct topology_type topology_mesh = {
     .ends = torus_ends,
     .rate_dim = torus_rate_dim,
     .bisection = torus_bisection,
+    .parts = topology_grid_parts,
 };

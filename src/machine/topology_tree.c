@@ -137,6 +137,14 @@ static int64_t tree_bisection(const struct topology *t)
     return g->n > 1 && g->k % 2 == 0 ? t->nnode / 2 : -1;
 }
 
+/* Sub-trees. */
+static int tree_parts(const struct topology *t, int64_t *size)
+{
+    int64_t block = 1;
+    for (int i = 0; i < t->spec->dims[1]; i++) size[i] = block *= t->spec->dims[0];
+    return t->spec->dims[1];
+}
+
 const struct topology_type topology_fat_tree = {
     .name = "fat-tree",
     .create = tree_create,
@@ -146,4 +154,5 @@ const struct topology_type topology_fat_tree = {
     .ends = tree_ends,
     .rate_dim = tree_rate_dim,
     .bisection = tree_bisection,
+    .parts = tree_parts,
 };

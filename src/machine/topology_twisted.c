@@ -195,4 +195,5 @@ const struct topology_type topology_twisted_torus = {
     .distance = twisted_distance,
     .ends = twisted_ends,
     .rate_dim = twisted_rate_dim,
+    .parts = topology_grid_parts,
 };

@@ -23,7 +23,7 @@
     X(TOPOLOGY_FULL_MESH, "full-mesh", full_mesh, 1, t->dims[0], 0)                                \
     /* k-ary n-tree; dims: arity, levels */                                                        \
     X(TOPOLOGY_FAT_TREE, "fat-tree", fat_tree, 2, power(t->dims[0], t->dims[1]),                   \
-      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES)                                                       \
+      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES | TOPOLOGY_ABOVE)                                      \
     /* groups of routers, all-to-all inside and between groups; dims: terminals a router, routers  \
      * a group, global links a router, groups */                                                   \
     X(TOPOLOGY_DRAGONFLY, "dragonfly", dragonfly, 4,                                               \
@@ -40,7 +40,7 @@
       size_count(size_count(t->dims[0], t->dims[1]), t->dims[4]), TOPOLOGY_OWN_NODES)              \
     /* any radix and oversubscription; dims: nodes a leaf, switches below one of level 2, ... */   \
     X(TOPOLOGY_FOLDED_CLOS, "folded-clos", folded_clos, 0, product(t->dims, t->ndim),              \
-      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES | TOPOLOGY_BUNDLES | TOPOLOGY_LEVELS)                  \
+      TOPOLOGY_OWN_NODES | TOPOLOGY_CHOOSES | TOPOLOGY_BUNDLES | TOPOLOGY_LEVELS | TOPOLOGY_ABOVE) \
     /* meshes and tori with further links between every i-th router */                             \
     X(TOPOLOGY_EXPRESS_MESH, "express-mesh", express_mesh, 0, product(t->dims, t->ndim),           \
       TOPOLOGY_GRID | TOPOLOGY_EXPRESS)                                                            \
@@ -56,19 +56,20 @@
 
 /* What settings can act on a family. */
 enum topology_trait {
-    TOPOLOGY_NO_LINKS = 1,  /* there are no links between routers */
-    TOPOLOGY_GRID = 2,      /* neighbours along dimensions: placement snake */
-    TOPOLOGY_RINGS = 4,     /* two ways round, which may be equally long: topology.tie */
-    TOPOLOGY_CUBE = 8,      /* binary numbers of routers: Xpress links, placement gray */
-    TOPOLOGY_SHARED = 16,   /* one resource for all: every network level does the same */
+    TOPOLOGY_NO_LINKS = 1,   /* there are no links between routers */
+    TOPOLOGY_GRID = 2,       /* neighbours along dimensions: placement snake */
+    TOPOLOGY_RINGS = 4,      /* two ways round, which may be equally long: topology.tie */
+    TOPOLOGY_CUBE = 8,       /* binary numbers of routers: Xpress links, placement gray */
+    TOPOLOGY_SHARED = 16,    /* one resource for all: every network level does the same */
     TOPOLOGY_OWN_NODES = 32, /* dims say how many nodes a router has */
-    TOPOLOGY_CHOOSES = 64,  /* several routes: topology.routing */
-    TOPOLOGY_LISTED = 128,  /* links come from the file: topology.links */
-    TOPOLOGY_BUNDLES = 256, /* several cables between two routers: topology.bundle */
-    TOPOLOGY_LEVELS = 512,  /* levels of any number of switches: topology.up */
+    TOPOLOGY_CHOOSES = 64,   /* several routes: topology.routing */
+    TOPOLOGY_LISTED = 128,   /* links come from the file: topology.links */
+    TOPOLOGY_BUNDLES = 256,  /* several cables between two routers: topology.bundle */
+    TOPOLOGY_LEVELS = 512,   /* levels of any number of switches: topology.up */
     TOPOLOGY_EXPRESS = 1024, /* further links of one length: topology.express */
     TOPOLOGY_TWISTED = 2048, /* shifted wrap links: topology.twist */
-    TOPOLOGY_SEEDED = 4096  /* drawn by chance: topology.seed */
+    TOPOLOGY_SEEDED = 4096,  /* drawn by chance: topology.seed */
+    TOPOLOGY_ABOVE = 8192    /* switches above those with nodes: a way is half up, half down */
 };
 
 #endif

@@ -135,28 +135,18 @@ static bool pairs(struct picture *p, struct store *s, struct arena *a, struct er
 {
     const struct topology *t = p->v->topology;
     struct arena_mark mark = arena_mark(a);
-    int *first = TAKE(a, t->nrouter + 1, int), *to = TAKE(a, t->nlink + 1, int);
-    int *seen = TAKE(a, t->nrouter, int), from, end, port;
+    const struct topology_neighbours near = topology_neighbours(t, a);
+    int *seen = TAKE(a, t->nrouter, int);
     bool ok = true;
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &end, &port);
-        if (from < end && topology_link_works(t, l)) first[from + 1]++;
-    }
-    for (int r = 0; r < t->nrouter; r++) first[r + 1] += first[r];
-    /* Filled from behind, so that first[] stays where the lists begin. */
-    int *filled = TAKE(a, t->nrouter, int);
-    for (int l = 0; l < t->nlink; l++) {
-        topology_link_ends(t, l, &from, &end, &port);
-        if (from < end && topology_link_works(t, l)) to[first[from] + filled[from]++] = end;
-    }
     p->npair = 0;
     for (int r = 0; r < t->nrouter && ok; r++)
-        for (int i = first[r]; i < first[r + 1] && ok; i++) {
-            /* Parallel cables are one line. */
-            if (seen[to[i]] == r + 1) continue;
-            seen[to[i]] = r + 1;
+        for (int i = near.first[r]; i < near.first[r + 1] && ok; i++) {
+            const int to = near.to[i];
+            /* The way back is the same line, and so are parallel cables. */
+            if (to <= r || seen[to] == r + 1) continue;
+            seen[to] = r + 1;
             p->npair++;
-            if (s && r % p->every == 0) ok = cable(p, s, r, to[i], e);
+            if (s && r % p->every == 0) ok = cable(p, s, r, to, e);
         }
     arena_release(a, mark);
     return ok;

@@ -34,7 +34,7 @@ static int levels(int leaves, int radix)
 }
 
 /* Nodes in use: ranks of one node come through one port. Ranks of a node stand together or not, so
- * each node is counted at the first of its ranks; the bits are freed with the run's memory. */
+ * each node is counted at the first of its ranks. */
 static int nodes_in_use(const struct placement *p, int nnode)
 {
     bool *seen = memory_zeroed((size_t)nnode, sizeof *seen);
@@ -62,9 +62,7 @@ int meeting_links(const struct machine_spec *m, const struct topology *t, const 
         if (links > farthest) farthest = links;
     }
     /* The root of a tree over switches is the top one, half-way to the farthest rank. */
-    const bool switches =
-        m->topology.family == TOPOLOGY_FAT_TREE || m->topology.family == TOPOLOGY_FOLDED_CLOS;
-    return switches ? farthest : 2 * farthest;
+    return topology_has(m->topology.family, TOPOLOGY_ABOVE) ? farthest : 2 * farthest;
 }
 
 sim_ps meeting_time(const struct network_spec *n, int links, int64_t bytes)
