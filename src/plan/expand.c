@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "plan/expand_parts.h"
-#include "plan/jobs_file.h"
 #include "spec/identity.h"
 
 /* A run of a plan takes about 7 KB, so the largest plan takes 0.7 GB and a few seconds. */
@@ -207,18 +206,16 @@ static void add_unused_of(struct plan *p, const struct setting_list *list)
 
 /* Settings that act in no run of the plan are told: a solver of a program that has none is
  * usually a mistake. */
-void expand_unused(struct plan *p, const struct scenario *s)
+void expand_unused(struct plan *p, struct scenario *s)
 {
     int ntable, n = 1;
     bool random = false;
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) n += table[i]->nfield;
     p->unused = TAKE(p->arena, n, const char *);
-    add_unused_of(p, &s->base);
-    for (int i = 0; i < s->naxis; i++)
-        for (int j = 0; j < s->axis[i].npoint; j++) add_unused_of(p, &s->axis[i].point[j]);
-    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++) add_unused_of(p, &s->jobs->job[i].set);
-    add_unused_of(p, &s->set);
+    struct setting_list **list;
+    const int nlist = scenario_lists(s, p->arena, &list);
+    for (int i = 0; i < nlist; i++) add_unused_of(p, list[i]);
     for (int i = 0; i < p->nrun && !random; i++) random = run_spec_is_random(&p->run[i]);
     if (s->repetitions > 1 && !random)
         add_unused(p, "repetitions", "nothing is random in these runs, so each is made once");

@@ -15,6 +15,6 @@ struct machine_file *expand_machine(const struct plan *p, int index);
 
 /* expand_unused: fill p->unused: settings of the scenario and the command line that act in no
  * run. */
-void expand_unused(struct plan *p, const struct scenario *s);
+void expand_unused(struct plan *p, struct scenario *s);
 
 #endif

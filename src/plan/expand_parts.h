@@ -1,4 +1,4 @@
-/* expand_parts.h - what expand.c and expand_jobs.c share: a plan while it grows. */
+/* expand_parts.h - what expand.c, expand_point.c and expand_jobs.c share: a plan while it grows. */
 #ifndef PLAN_EXPAND_PARTS_H
 #define PLAN_EXPAND_PARTS_H
 
@@ -46,7 +46,8 @@ struct expansion {
 bool expand_spec(struct expansion *x, struct run_spec *run);
 int expand_finish(struct expansion *x, struct run_spec *run);
 
-/* expand_path: the model's file of *run, found and digested. False with x->err. */
+/* expand_path: the model's file of *run, found and digested, unless it was before. False with
+ * x->err. */
 bool expand_path(struct expansion *x, struct run_spec *run);
 
 /* expand_jobs: the runs of the present point of a scenario with jobs, into run

@@ -14,12 +14,13 @@
 #include "plan/file_kind.h"
 #include "plan/program_file.h"
 
-/* A run's settings are 5 KB of text as a rule; those of all runs may have as much beyond that. */
-enum { MAX_BODIES = 1 << 27, USUAL_TEXT_BYTES = 8192, MOST_TEXT_BYTES = 1 << 26 };
+/* MOST_LISTS: of settings that act at one point. A run's settings are 5 KB of text as a rule; those
+ * of all runs may have as much beyond that. */
+enum { MAX_BODIES = 1 << 27, MOST_LISTS = SCENARIO_MAX_AXES + 3,
+       USUAL_TEXT_BYTES = 8192, MOST_TEXT_BYTES = 1 << 26 };
 
-/* The settings of the present point in the order in which they act; `list` needs naxis + 3
- * entries. */
-static int lists_of(const struct expansion *x, const struct setting_list **list)
+/* The settings of the present point in the order in which they act; how many lists. */
+static int lists_of(const struct expansion *x, const struct setting_list *list[MOST_LISTS])
 {
     const struct scenario *s = x->scenario;
     int n = 0;
@@ -35,7 +36,7 @@ static int lists_of(const struct expansion *x, const struct setting_list **list)
 static const struct setting *last_of(const struct expansion *x,
                                      bool (*matches)(const struct setting *))
 {
-    const struct setting_list *list[SCENARIO_MAX_AXES + 3];
+    const struct setting_list *list[MOST_LISTS];
     int n = lists_of(x, list);
     const struct setting *found = NULL;
     for (int i = 0; i < n; i++)
@@ -181,7 +182,8 @@ bool expand_path(struct expansion *x, struct run_spec *run)
     const struct model_spec *m = &run->model;
     struct text file = {0};
     bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
-    if (!from_file) return true;
+    /* Of jobs it is found before their combinations are made. */
+    if (!from_file || run->model_file[0] != '\0') return true;
     if (m->path[0] == '\0')
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 0,
                           "model.path is missing: the file of the model");
@@ -235,7 +237,7 @@ static void note_refusal(struct expansion *x, struct run_spec *run)
 /* A program's n stands for n, so its parameters follow when n is known. */
 static bool resolve_program(struct expansion *x, struct run_spec *run)
 {
-    const struct setting_list *list[SCENARIO_MAX_AXES + 3];
+    const struct setting_list *list[MOST_LISTS];
     const int n = lists_of(x, list);
     return program_file_choose(x->scenario, run, list, n, x->err) && resolve_sizes(x, run) &&
            program_file_parameters(x->scenario, run, list, n, x->plan->arena, x->err);
@@ -255,19 +257,15 @@ static void name_run(struct expansion *x, struct run_spec *run, const struct mac
 
 bool expand_spec(struct expansion *x, struct run_spec *run)
 {
+    const struct setting_list *list[MOST_LISTS];
+    const int n = lists_of(x, list);
     struct start *start = start_of(x);
-    const struct scenario *s = x->scenario;
     if (start == NULL) return false;
     x->present = start;
-    /* Later settings win: the base (in the start), the axes in order, the job's, then --set. */
     *run = start->run;
-    for (int i = 0; i < s->naxis; i++) {
-        const struct setting_list *list = &s->axis[i].point[x->point[i]];
-        for (int j = 0; j < list->n; j++) setting_apply(&list->at[j], run, x->plan->arena);
-    }
-    for (int i = 0; x->job != NULL && i < x->job->n; i++)
-        setting_apply(&x->job->at[i], run, x->plan->arena);
-    for (int i = 0; i < s->set.n; i++) setting_apply(&s->set.at[i], run, x->plan->arena);
+    /* The first list is the base, which the start has already. */
+    for (int i = 1; i < n; i++)
+        for (int j = 0; j < list[i]->n; j++) setting_apply(&list[i]->at[j], run, x->plan->arena);
     return resolve_program(x, run);
 }
 

@@ -18,7 +18,8 @@
 /* In all files of places together: each is 10 bytes of a list, and a number of each run. */
 enum { MOST_PLACES = 1 << 20 };
 
-static const char kind_key[] = "machine.placement.kind", list_key[] = "machine.placement.list";
+static const char places[] = "machine.placement.", kind_key[] = "machine.placement.kind",
+                  list_key[] = "machine.placement.list";
 
 /* A job being read. */
 struct reading {
@@ -199,8 +200,6 @@ static bool add_leaf(void *context, const char *key, const struct node *leaf, co
 {
     const struct reading *r = context;
     /* Its place is the only thing that a job has of the machine. */
-    static const char places[] = "machine.placement.";
-    /* A list is a sweep at the top; here it would be several jobs. */
     const bool shared = strncmp(key, "machine.", 8) == 0 &&
                         strncmp(key, places, sizeof places - 1) != 0;
     if (shared || strcmp(key, "label") == 0)
@@ -254,11 +253,11 @@ static bool read_name(const struct scenario *s, const struct node *job, struct s
                           "jobs: name: '%.80s': expected a letter, then letters, digits, - and _, "
                           "at most %d",
                           n->text != NULL ? n->text : "a list or mapping", JOB_NAME - 1);
-    /* Those before it: the later one is the mistake. */
     if (strcmp(n->text, "background") == 0)
         return err_set_at(e, ERR_DATA, s->path, n->line,
                           "jobs: name: 'background' is what takes the place of all other jobs; "
                           "choose another name");
+    /* Of two that have one name the later one is the mistake. */
     for (int i = 0; i < s->jobs->n; i++)
         if (strcmp(s->jobs->job[i].name, n->text) == 0)
             return err_set_at(e, ERR_DATA, s->path, n->line,
@@ -399,15 +398,18 @@ static struct scenario_job *job_of(const struct scenario *s, const char **key, s
     return NULL;
 }
 
-/* What was set before gives way. */
-static void remove_key(struct setting_list *list, const char *key)
+/* What was set before gives way: `key`, or where that ends in a dot all keys that begin so. */
+static void remove_keys(struct setting_list *list, const char *key)
 {
-    /* A key is at most once in a list. */
+    const size_t length = strlen(key);
+    const bool group = key[length - 1] == '.';
+    int kept = 0;
     for (int i = 0; i < list->n; i++) {
-        if (strcmp(list->at[i].key, key) != 0) continue;
-        memmove(&list->at[i], &list->at[i + 1], (size_t)(--list->n - i) * sizeof *list->at);
-        return;
+        const char *own = list->at[i].key;
+        if (group ? strncmp(own, key, length) != 0 : strcmp(own, key) != 0)
+            list->at[kept++] = list->at[i];
     }
+    list->n = kept;
 }
 
 bool jobs_file_set(struct scenario *s, const char *key, const char *text, struct arena *a,
@@ -415,8 +417,8 @@ bool jobs_file_set(struct scenario *s, const char *key, const char *text, struct
 {
     struct scenario_job *job = job_of(s, &key, e);
     if (job == NULL) return false;
-    /* As a file of one line, so that lists and words mean the same; messages name --set. */
-    /* The scenario is borrowed under another name, for paths that the user types. */
+    /* As a file of one line, so that lists and words mean the same. Messages name --set, and paths
+     * that the user types begin where he is: the scenario is borrowed under another name. */
     struct text line = {0};
     struct scenario named = *s;
     struct reading r = {&named, job, a, e};
@@ -431,8 +433,7 @@ bool jobs_file_set(struct scenario *s, const char *key, const char *text, struct
     if (strcmp(key, "name") == 0)
         return err_set_at(e, ERR_DATA, "--set", 0, "jobs.%s.name: a job keeps its name", job->name);
     /* A place is several settings, all of which give way. */
-    const bool place = strcmp(key, "placement") == 0;
-    remove_key(&job->set, place ? kind_key : setting_key(root->child->key));
-    if (place) remove_key(&job->set, list_key), remove_key(&job->set, "machine.placement.seed");
+    remove_keys(&job->set,
+                strcmp(key, "placement") == 0 ? places : setting_key(root->child->key));
     return read_key(&r, root->child);
 }

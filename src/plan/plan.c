@@ -10,7 +10,6 @@
 #include "plan/data_dir.h"
 #include "plan/expand.h"
 #include "plan/file_kind.h"
-#include "plan/jobs_file.h"
 #include "plan/machine_file.h"
 #include "plan/program_file.h"
 #include "plan/scenario_file.h"
@@ -36,17 +35,16 @@ static bool kernels_exist(const struct setting_list *list, const struct plan_opt
 }
 
 /* Kernels are built in above this room, so their names come with the options. */
-static bool all_kernels_exist(const struct scenario *s, const struct plan_options *o, struct err *e)
+static bool all_kernels_exist(struct scenario *s, const struct plan_options *o, struct arena *a,
+                              struct err *e)
 {
     /* Without a list nobody wants to know. */
     if (o == NULL || o->nkernel == 0) return true;
-    if (!kernels_exist(&s->base, o, e)) return false;
-    for (int i = 0; i < s->naxis; i++)
-        for (int j = 0; j < s->axis[i].npoint; j++)
-            if (!kernels_exist(&s->axis[i].point[j], o, e)) return false;
-    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++)
-        if (!kernels_exist(&s->jobs->job[i].set, o, e)) return false;
-    return kernels_exist(&s->set, o, e);
+    struct setting_list **list;
+    const int n = scenario_lists(s, a, &list);
+    for (int i = 0; i < n; i++)
+        if (!kernels_exist(list[i], o, e)) return false;
+    return true;
 }
 
 /* Whether values of the setting sort and align as numbers: those with units are texts. */
@@ -79,8 +77,8 @@ static void list_swept(struct plan *p, const struct scenario *s)
     int n = 0;
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) n += s->axis[i].point[j].n;
-    /* room for all settings of all points, though most are of the same keys */
-    p->swept = TAKE(p->arena, n + 3, struct plan_swept);
+    /* room for all settings of all points, though most are of the same keys, and for two of jobs */
+    p->swept = TAKE(p->arena, n + 2 + 1, struct plan_swept);
     if (s->jobs != NULL) {
         p->swept[p->nswept++] = (struct plan_swept){"job.name", false};
         p->swept[p->nswept++] = (struct plan_swept){"job.beside", false};
@@ -94,7 +92,7 @@ static bool fill(struct plan *p, struct scenario *s, const struct plan_options *
                  struct err *e)
 {
     /* Values of parameters are checked before the expansion, which takes them as right. */
-    if (!all_kernels_exist(s, o, e) || !program_file_check(s, p->arena, e)) return false;
+    if (!all_kernels_exist(s, o, p->arena, e) || !program_file_check(s, p->arena, e)) return false;
     text_copy(p->name, sizeof p->name, s->stem);
     p->question = s->question;
     p->figure = s->figure;

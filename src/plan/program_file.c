@@ -13,7 +13,6 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "plan/data_dir.h"
-#include "plan/jobs_file.h"
 #include "spec/field.h"
 
 enum { MOST_BODIES = 1 << 27 };
@@ -346,13 +345,11 @@ static bool check_list(const struct scenario *s, struct setting_list *list, stru
 /* Every value against the programs that declare its name: in the base, in all points, in --set. */
 bool program_file_check(struct scenario *s, struct arena *a, struct err *e)
 {
-    if (!check_list(s, &s->base, a, e)) return false;
-    for (int i = 0; i < s->naxis; i++)
-        for (int j = 0; j < s->axis[i].npoint; j++)
-            if (!check_list(s, &s->axis[i].point[j], a, e)) return false;
-    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++)
-        if (!check_list(s, &s->jobs->job[i].set, a, e)) return false;
-    return check_list(s, &s->set, a, e);
+    struct setting_list **list;
+    const int n = scenario_lists(s, a, &list);
+    for (int i = 0; i < n; i++)
+        if (!check_list(s, list[i], a, e)) return false;
+    return true;
 }
 
 /* The last setting of `key` at a point, NULL: there is none. */

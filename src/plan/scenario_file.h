@@ -41,6 +41,10 @@ struct scenario {
     const char **figure;
 };
 
+/* scenario_lists: every list of settings that `s` has: the base, each point of each axis, those of
+ * its jobs, --set. A table in `a` into *list; returns how many. */
+int scenario_lists(struct scenario *s, struct arena *a, struct setting_list ***list);
+
 /* scenario_file_read: scenario `name` (see data_dir_find) with `o`. Returns false with
  * ERR_NO_INPUT, ERR_DATA or ERR_USAGE. */
 bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o,
