@@ -15,6 +15,7 @@
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/check.h"
+#include "base/sorted.h"
 #include "reality/predict.h"
 #include "spec/task.h"
 
@@ -210,13 +211,6 @@ static void print_json(struct summary *s, const struct run_spec *spec, const str
     json_end(j);
 }
 
-/* For qsort: the errors are numbers. */
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* The median is that of the sorted errors, the upper one of two. Tasks without a measurement are
  * told once, since a scenario may sweep more than was measured. */
 static void print_summary(struct summary *s)
@@ -225,7 +219,7 @@ static void print_summary(struct summary *s)
         fprintf(stderr, "mimdsim: %d of the tasks have no measured run in %s\n", s->missing,
                 s->c->database);
     if (s->c->json || s->n == 0) return;
-    qsort(s->error, (size_t)s->n, sizeof *s->error, by_value);
+    sort_numbers(s->error, (size_t)s->n);
     printf("error of %d: median %.1f %%, largest %.1f %%\n", s->n, 100 * s->error[s->n / 2],
            100 * s->error[s->n - 1]);
 }

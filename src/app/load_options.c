@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/flag.h"
+#include "base/sorted.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "study/load.h"
@@ -77,13 +78,6 @@ static bool add_range(struct load_options *o, const char *text, struct arena *a,
     return low + count * step >= high - 1e-9 * high || add_rate(o, high, e);
 }
 
-/* For qsort. */
-static int by_size(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* Ranges and numbers, mixed; sorted, each once. */
 static bool rates_of(struct load_options *o, const char *text, struct arena *a, struct err *e)
 {
@@ -98,7 +92,7 @@ static bool rates_of(struct load_options *o, const char *text, struct arena *a, 
             return err_set(e, ERR_USAGE, "--rates: '%.80s' is not a number", word[i]);
         if (range ? !add_range(o, word[i], a, e) : !add_rate(o, x, e)) return false;
     }
-    qsort(o->rate, (size_t)o->nrate, sizeof *o->rate, by_size);
+    sort_numbers(o->rate, (size_t)o->nrate);
     for (int i = 0; i < o->nrate; i++)
         if (i == 0 || o->rate[i] > o->rate[kept - 1] * (1 + 1e-9)) o->rate[kept++] = o->rate[i];
     /* a load that was named twice is one point, also where a range has rounded it */

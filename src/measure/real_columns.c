@@ -1,36 +1,20 @@
 /* real_columns.c - the columns of real_row.h, and statistics of repetitions. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/check.h"
+#include "base/sorted.h"
 #include "measure/real_row.h"
 
 /* --- statistics ------------------------------------------------------------------------------- */
-
-/* For qsort; there are no NaNs among measured times. */
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-/* Between the two neighbours of place (n - 1) share, as most programs of statistics do it (type 7
- * of Hyndman and Fan 1996). */
-static double quantile(const double *sorted, int n, double share)
-{
-    const double place = share * (n - 1);
-    const int below = (int)place;
-    if (below + 1 >= n) return sorted[n - 1];
-    return sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]);
-}
 
 /* The sorted values stay the caller's. */
 struct real_times real_times_of(double *value, int n)
 {
     CHECK(n >= 1);
-    qsort(value, (size_t)n, sizeof *value, by_value);
-    return (struct real_times){value[0], quantile(value, n, 0.25), quantile(value, n, 0.5),
-                               quantile(value, n, 0.75), value[n - 1]};
+    sort_numbers(value, (size_t)n);
+    return (struct real_times){value[0], sorted_quantile(value, n, 0.25),
+                               sorted_quantile(value, n, 0.5), sorted_quantile(value, n, 0.75),
+                               value[n - 1]};
 }
 
 /* --- columns ---------------------------------------------------------------------------------- */

@@ -8,11 +8,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/progress.h"
 #include "reality/fit.h"
+#include "reality/predict.h"
 #include "reality/rates.h"
 #include "run/run.h"
 
@@ -26,29 +26,21 @@ static const char *const names[CODE_PRICES] = {"issue", "div", "root", "chain", 
 
 const char *code_price_name(int i) { return names[i]; }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* --- the fit ---------------------------------------------------------------------------------- */
 
 /* What the samples take at `price`: fitted times, residuals, and the sum of their squares. */
 static bool judge(struct code_rates *r, const double *price, code_time_fn *time, void *context,
                   double *squares, struct err *e)
 {
-    double off[CODE_RATES_MOST] = {0};
-    *squares = r->residual = 0;
+    double off[CODE_RATES_MOST];
+    *squares = 0;
     for (int i = 0; i < r->n; i++) {
         struct code_sample *s = &r->sample[i];
         if (!time(context, i, price, &s->fitted, e)) return false;
         off[i] = fabs(s->fitted / s->seconds - 1);
         *squares += off[i] * off[i];
-        r->residual = fmax(r->residual, off[i]);
     }
-    qsort(off, (size_t)r->n, sizeof *off, by_value);
-    r->median_residual = off[r->n / 2];
+    fit_residuals(off, r->n, &r->median_residual, &r->residual);
     memcpy(r->price, price, sizeof r->price);
     return true;
 }
@@ -133,9 +125,7 @@ static bool simulated_time(void *context, int i, const double *price, double *se
                                                 .root = fmax(price[2], 1e-6),
                                                 .chain = price[3],
                                                 .step = price[4]};
-    bool ok = run_sharing(&spec, NULL, x->cache, a, r, e);
-    if (ok && r->status != RUN_OK)
-        ok = err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", r->text);
+    const bool ok = predict_simulate(&spec, x->cache, a, r, e);
     *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
     arena_destroy(a);
     return ok;

@@ -7,10 +7,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "reality/fit.h"
+#include "reality/predict.h"
 #include "run/real.h"
 
 /* REPEAT: calls of a run, as the scenario says. */
@@ -62,9 +63,7 @@ static bool predict(struct measuring *m, const struct run_spec *spec, double *se
     struct arena *a = arena_create();
     struct run_result *r = TAKE(a, 1, struct run_result);
     there.machine = *m->machine;
-    bool ok = run_sharing(&there, NULL, m->cache, a, r, e);
-    if (ok && r->status != RUN_OK)
-        ok = err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", r->text);
+    const bool ok = predict_simulate(&there, m->cache, a, r, e);
     *seconds = 0;
     for (int k = 0; ok && k < r->nstage; k++) {
         if (strcmp(r->stage_name[k], stage) != 0) continue;
@@ -151,24 +150,13 @@ bool collective_times_measure(struct plan *p, const struct hosts *hosts, struct 
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
-/* For qsort. */
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Predicted against measured, of every sample. */
 static void judge_residuals(struct collective_times *t)
 {
-    double off[COLLECTIVE_TIMES_MOST] = {0};
-    t->residual = t->median_residual = 0;
-    for (int i = 0; i < t->n; i++) {
+    double off[COLLECTIVE_TIMES_MOST];
+    for (int i = 0; i < t->n; i++)
         off[i] = fabs(t->sample[i].predicted / t->sample[i].measured - 1);
-        t->residual = fmax(t->residual, off[i]);
-    }
-    qsort(off, (size_t)t->n, sizeof *off, by_value);
-    if (t->n > 0) t->median_residual = off[t->n / 2];
+    fit_residuals(off, t->n, &t->median_residual, &t->residual);
 }
 
 /* Samples first .. end - 1 are one call by several algorithms: whether the fastest of them is

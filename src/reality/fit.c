@@ -11,6 +11,7 @@
 #include <gsl/gsl_multifit.h>
 
 #include "base/check.h"
+#include "base/sorted.h"
 
 /* Residual of equation i under prices x, relative to its y. */
 static double relative_residual(const double *row, double y, const double *x, int k)
@@ -128,4 +129,13 @@ struct fit_line fit_line_of(const double *x, const double *y, int n)
         l.slope = price[1];
     }
     return l;
+}
+
+void fit_residuals(double *off, int n, double *median, double *largest)
+{
+    *median = *largest = 0;
+    if (n == 0) return;
+    sort_numbers(off, (size_t)n);
+    *median = off[n / 2];
+    *largest = off[n - 1];
 }

@@ -28,4 +28,8 @@ struct fit_line fit_line_of(const double *x, const double *y, int n);
  *   Returns false when there are fewer equations than unknowns that are left. */
 bool fit_prices(const double *count, const double *y, int n, int k, double *x, double *residual);
 
+/* fit_residuals: the median (the upper one of two) and the largest of n residuals off[i] >= 0, 0
+ * where there are none; sorts them. */
+void fit_residuals(double *off, int n, double *median, double *largest);
+
 #endif

@@ -98,8 +98,8 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
     scale_software(&m->software, g, factor);
 }
 
-static bool simulate(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
-                     struct run_result *out, struct err *e)
+bool predict_simulate(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
+                      struct run_result *out, struct err *e)
 {
     if (!run_sharing(spec, NULL, cache, a, out, e)) return false;
     if (out->status == RUN_OK) return true;
@@ -163,7 +163,7 @@ static bool contribution(const struct run_spec *spec, enum price_group g, struct
     struct arena *a = arena_create();
     struct run_result *r = TAKE(a, 1, struct run_result);
     price_scale(&changed.machine, g, 1 + STEP);
-    const bool ok = simulate(&changed, cache, a, r, e);
+    const bool ok = predict_simulate(&changed, cache, a, r, e);
     *out = ok ? ((double)r->makespan_ps * 1e-12 - before) / STEP : 0;
     arena_destroy(a);
     return ok;
@@ -175,7 +175,7 @@ bool predict_run(const struct run_spec *spec, const struct real_result *real,
     struct arena *a = arena_create();
     struct run_result *r = TAKE(a, 1, struct run_result);
     memset(out, 0, sizeof *out);
-    bool ok = simulate(spec, cache, a, r, e);
+    bool ok = predict_simulate(spec, cache, a, r, e);
     if (ok) {
         out->predicted = (double)r->makespan_ps * 1e-12;
         out->measured = real->time.median;

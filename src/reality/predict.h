@@ -45,6 +45,10 @@ struct prediction {
     double factor;               /* by which its times would have to change */
 };
 
+/* predict_simulate: run_sharing, and ERR_CHECK when the simulated run is not RUN_OK. */
+bool predict_simulate(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
+                      struct run_result *out, struct err *e);
+
 /* predict_run: simulate `spec` on its machine, and once more for each group of prices.
  *
  *   real  in  the measured times and stages (time.median and stage[].median_s)

@@ -26,12 +26,6 @@ enum {
     LEAST_GOOD = 3
 };
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Copies are too few in kernels on one rank to be fitted: a block is copied to and fro, within the
  * first cache, as packing does it. */
 static double copy_price(void)
@@ -148,16 +142,13 @@ bool rates_fit(struct rates *r)
     }
     if (!fit_prices(count, y, r->n, UNKNOWNS, x, &unused)) return false;
     r->div = x[0], r->call = x[1], r->fixed = x[2];
-    r->residual = 0;
     for (int i = 0; i < r->n; i++) {
         const struct work *w = &r->sample[i].work;
         double sum = known_time(r, w);
         for (int j = 0; j < UNKNOWNS; j++) sum += count[i * UNKNOWNS + j] * x[j];
         off[i] = fabs(sum - r->sample[i].seconds) / r->sample[i].seconds;
-        r->residual = fmax(r->residual, off[i]);
     }
-    qsort(off, (size_t)r->n, sizeof *off, by_value);
-    r->median_residual = off[r->n / 2];
+    fit_residuals(off, r->n, &r->median_residual, &r->residual);
     return true;
 }
 

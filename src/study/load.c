@@ -11,6 +11,7 @@
 
 #include "base/picoseconds.h"
 #include "base/progress.h"
+#include "base/sorted.h"
 #include "base/text.h"
 #include "machine/placement.h"
 #include "study/steady.h"
@@ -172,12 +173,6 @@ static bool run_once(const struct load_question *q, double offered, int64_t cycl
 
 /* ---- a point */
 
-static int by_value(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* Mean and quantiles of what the warm-up leaves. */
 static void fill_latency(struct attempt *x, struct load_point *p)
 {
@@ -186,7 +181,7 @@ static void fill_latency(struct attempt *x, struct load_point *p)
     p->mean_ps = x->steady.mean;
     p->half_ps = x->steady.half;
     p->lag = x->steady.lag;
-    qsort(from, (size_t)n, sizeof *from, by_value);
+    sort_numbers(from, (size_t)n);
     p->p50_ps = (int64_t)steady_quantile(from, n, 0.5);
     p->p99_ps = (int64_t)steady_quantile(from, n, 0.99);
     p->max_ps = (int64_t)from[n - 1];

@@ -3,18 +3,11 @@
 #include "study/netcheck_ask.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/sorted.h"
 #include "base/text.h"
 #include "study/netcheck_case.h"
-
-/* For qsort. */
-static int by_value(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
 
 /* n + 1 elements: an arena gives no array of none. */
 static double *cycles_of(const sim_ps *ps, int n, struct arena *a)
@@ -65,8 +58,8 @@ static void compare_messages(const struct netcheck_question *k, const sim_ps *ar
     /* A copy: sorting must not change the case's own list. */
     memcpy(reference, k->arrival, (size_t)n * sizeof *reference);
     if (k->any_order) {
-        qsort(found, (size_t)n, sizeof *found, by_value);
-        qsort(reference, (size_t)n, sizeof *reference, by_value);
+        sort_numbers(found, (size_t)n);
+        sort_numbers(reference, (size_t)n);
     }
     for (int i = 0; i < n; i++) {
         /* The error of an arrival at 0 is absolute: at least a cycle in the denominator. */

@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/size.h"
+#include "base/sorted.h"
 
 enum { RESAMPLES = 200 }; /* of the bootstrap: its own error is 5 % of the standard error */
 
@@ -102,33 +103,19 @@ double variance_shares(int n, int k, const double *y, struct variance_share *sha
     return whole / n;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Between two results in proportion (type 7 of Hyndman and Fan 1996). */
-static double quantile(int n, const double *y, double q)
-{
-    const double at = q * (n - 1);
-    const int below = (int)at;
-    return below + 1 < n ? y[below] + (at - below) * (y[below + 1] - y[below]) : y[n - 1];
-}
-
 struct variance_band variance_band(int n, double *y)
 {
     int finite = 0;
     for (int i = 0; i < n; i++)
         if (isfinite(y[i])) y[finite++] = y[i];
     if (finite == 0) return (struct variance_band){NAN, NAN, NAN, NAN, NAN, 0};
-    qsort(y, (size_t)finite, sizeof *y, compare);
+    sort_numbers(y, (size_t)finite);
     struct variance_band b = {.n = finite};
     for (int i = 0; i < finite; i++) b.mean += y[i] / finite;
     for (int i = 0; i < finite; i++) b.deviation += (y[i] - b.mean) * (y[i] - b.mean);
     b.deviation = finite > 1 ? sqrt(b.deviation / (finite - 1)) : NAN;
-    b.low = quantile(finite, y, 0.05);
-    b.median = quantile(finite, y, 0.5);
-    b.high = quantile(finite, y, 0.95);
+    b.low = sorted_quantile(y, finite, 0.05);
+    b.median = sorted_quantile(y, finite, 0.5);
+    b.high = sorted_quantile(y, finite, 0.95);
     return b;
 }
