@@ -203,7 +203,7 @@ static void run_without_hardware(const struct collective_call *k)
 void collective_run(const struct collective_algorithm *a, const struct collective_call *k)
 {
     const bool network = k->comm->type->meet && k->comm->hardware;
-    if (a->run == hardware_run && !network) run_without_hardware(k);
+    if (collective_by_network(a) && !network) run_without_hardware(k);
     else a->run(k);
 }
 

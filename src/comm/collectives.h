@@ -123,6 +123,9 @@ const struct collective_algorithm *collective_algorithms(enum collective_kind ki
 const struct collective_algorithm *collective_algorithm_find(enum collective_kind kind,
                                                              const char *name);
 
+/* collective_by_network: whether it is what a network does by itself, the algorithm "hardware". */
+bool collective_by_network(const struct collective_algorithm *a);
+
 /* collective_applies: whether the algorithm can do a call of this shape. */
 bool collective_applies(const struct collective_algorithm *a, const struct collective_shape *s);
 

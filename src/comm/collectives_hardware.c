@@ -16,6 +16,8 @@
 const char collective_hardware_needs[] =
     "a network that does it (software.barrier.kind, network.collective), vectors within its limit";
 
+bool collective_by_network(const struct collective_algorithm *a) { return a->run == hardware_run; }
+
 /* Sub-communicators and non-blocking calls have no hardware: their comm says so. */
 bool needs_hardware(const struct collective_shape *s)
 {

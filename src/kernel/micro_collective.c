@@ -70,9 +70,9 @@ static const struct collective_algorithm *named(const struct run_spec *spec,
                 collective_name(s->kind), name, names);
     else if (!collective_applies(a, s)) {
         char why[200];
-        if (strcmp(name, "hardware") == 0) {
+        if (collective_by_network(a)) {
             collective_refusal(&spec->machine, s, why, (int)sizeof why);
-            err_set(e, ERR_CONFIG, "%s by 'hardware': %s", collective_name(s->kind), why);
+            err_set(e, ERR_CONFIG, "%s by '%s': %s", collective_name(s->kind), name, why);
             return NULL;
         }
         err_set(e, ERR_CONFIG, "%s by '%s' on %d processors: it needs %s", collective_name(s->kind),

@@ -77,10 +77,7 @@ int mpi_comm_get_name(struct mpi_rank *self, MPI_Comm comm, char *comm_name, int
     if (c) name = c->name ? c->name : "";
     if (c && !c->name && c == self->world_comm) name = "MPI_COMM_WORLD";
     if (c && !c->name && c == self->self_comm) name = "MPI_COMM_SELF";
-    /* Of a name that is too long the length is that of what is there. */
-    snprintf(comm_name, MPI_MAX_OBJECT_NAME, "%s", name);
-    *resultlen = (int)strlen(comm_name);
-    return MPI_SUCCESS;
+    return mpi_text_out(comm_name, MPI_MAX_OBJECT_NAME, name, resultlen);
 }
 
 /* The text is copied: the program may use its memory again. */

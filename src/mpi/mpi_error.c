@@ -250,8 +250,5 @@ int mpi_error_string(struct mpi_rank *self, int errorcode, char *string, int *re
     const char *text = "unknown error";
     if (i >= 0) text = self->errors->of[i].text ? self->errors->of[i].text : "";
     else if (errorcode >= 0 && errorcode < NCLASS) text = class_text[errorcode];
-    /* Of a text that is too long the length is that of what is there. */
-    snprintf(string, MPI_MAX_ERROR_STRING, "%s", text);
-    *resultlen = (int)strlen(string);
-    return MPI_SUCCESS;
+    return mpi_text_out(string, MPI_MAX_ERROR_STRING, text, resultlen);
 }

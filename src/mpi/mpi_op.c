@@ -235,8 +235,9 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
 static enum comm_operation hardware_operation(const struct mpi_op *op, const struct mpi_type *t)
 {
     const intptr_t handle = FIRST_OP + (op - standard);
-    if (handle >= 0x28 && handle <= 0x32) return COMM_LOGICAL;
-    if (handle < 0x21 || handle > 0x23) return COMM_OWN;
+    /* Sums and extremes stand side by side, and so do bits and truths. */
+    if (handle >= (intptr_t)MPI_BAND && handle <= (intptr_t)MPI_LXOR) return COMM_LOGICAL;
+    if (handle < (intptr_t)MPI_SUM || handle > (intptr_t)MPI_MAX) return COMM_OWN;
     if (t->class >= CLASS_INT8 && t->class <= CLASS_UINT64) return COMM_INTEGER;
     return t->class == CLASS_FLOAT || t->class == CLASS_DOUBLE ? COMM_REAL : COMM_OWN;
 }

@@ -128,6 +128,7 @@ int mpi_attributes_copy(struct mpi_rank *r, enum mpi_kind kind, const void *from
 const char *mpi_name_given(struct mpi_rank *r, enum mpi_kind kind, const void *object,
                            const char *else_);
 void mpi_name_give(struct mpi_rank *r, enum mpi_kind kind, const void *object, const char *name);
+int mpi_text_out(char *to, int capacity, const char *text, int *length);
 
 /* --- mpi_window.c: attribute: one of the standard's, false: none of them --- */
 bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value);

@@ -54,7 +54,8 @@ static int64_t elements(int64_t n, const struct mpi_type *t, int64_t *bytes)
     found = whole * t->basics;
     *bytes -= whole * t->size;
     if (whole == n || *bytes == 0 || !t->piece) return found;
-    for (int k = 0; k<t->npiece && * bytes> 0; k++) {
+    for (int k = 0; k < t->npiece; k++) {
+        if (*bytes <= 0) break;
         int64_t in_piece = t->piece[k].count * t->piece[k].length, before = *bytes;
         found += elements(in_piece, t->piece[k].of, bytes);
         /* less than an element of this piece is left: it is none of the next one's */

@@ -136,10 +136,7 @@ int mpi_type_get_name(struct mpi_rank *self, MPI_Datatype datatype, char *type_n
     const char *name = "MPI_DATATYPE_NULL";
     if (!t && datatype != MPI_DATATYPE_NULL) return self->code;
     if (t) name = mpi_name_given(self, KIND_TYPE, t, t->name ? t->name : "");
-    /* Of a name that is too long the length is that of what is there. */
-    snprintf(type_name, MPI_MAX_OBJECT_NAME, "%s", name);
-    *resultlen = (int)strlen(type_name);
-    return MPI_SUCCESS;
+    return mpi_text_out(type_name, MPI_MAX_OBJECT_NAME, name, resultlen);
 }
 
 /* Also of basic types, whose names this changes for the rank alone. */

@@ -214,10 +214,7 @@ int mpi_win_get_name(struct mpi_rank *self, MPI_Win win, char *win_name, int *re
     struct mpi_window *w = win == MPI_WIN_NULL ? NULL : mpi_window_of(self, win);
     if (!w && win != MPI_WIN_NULL) return self->code;
     const char *name = w ? mpi_name_given(self, KIND_WIN, w, "") : "MPI_WIN_NULL";
-    /* Of a name that is too long the length is that of what is there. */
-    snprintf(win_name, MPI_MAX_OBJECT_NAME, "%s", name);
-    *resultlen = (int)strlen(win_name);
-    return MPI_SUCCESS;
+    return mpi_text_out(win_name, MPI_MAX_OBJECT_NAME, name, resultlen);
 }
 
 int mpi_win_set_name(struct mpi_rank *self, MPI_Win win, const char *win_name)

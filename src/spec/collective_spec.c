@@ -71,6 +71,12 @@ struct comm_hardware collective_hardware(const struct machine_spec *m)
     return h;
 }
 
+/* The key by which a machine says whether its network does `kind`. */
+static const char *key_of(enum collective_kind kind)
+{
+    return kind == COLLECTIVE_BARRIER ? "software.barrier.kind" : "network.collective.kinds";
+}
+
 /* The first reason of several: kind, size, operation. */
 void collective_refusal(const struct machine_spec *m, const struct collective_shape *s, char *why,
                         int size)
@@ -81,8 +87,7 @@ void collective_refusal(const struct machine_spec *m, const struct collective_sh
     const int64_t bytes = s->count * s->element;
     if (!(h.kinds >> s->kind & 1))
         snprintf(why, (size_t)size, "the network of %s has no hardware for %s (%s)", m->name, kind,
-                 s->kind == COLLECTIVE_BARRIER ? "software.barrier.kind"
-                                               : "network.collective.kinds");
+                 key_of(s->kind));
     else if (bytes > h.largest)
         snprintf(why, (size_t)size,
                  "the network of %s takes vectors of at most %lld B (network.collective.largest), "
@@ -105,26 +110,43 @@ bool collective_rules_fit(const struct machine_spec *m, char *why, int size)
     if (!collective_rules_parse(m->software.collectives, rule, &n, why, size)) return false;
     /* The first rule that does not fit is told; there is one text for all. */
     for (int i = 0; i < n; i++) {
-        if (strcmp(rule[i].algorithm->name, "hardware") != 0 || kinds >> rule[i].kind & 1) continue;
-        const char *kind = collective_name(rule[i].kind);
+        const struct collective_rule *r = &rule[i];
+        if (!collective_by_network(r->algorithm) || kinds >> r->kind & 1) continue;
+        const char *kind = collective_name(r->kind);
         snprintf(why, (size_t)size,
-                 "software.collectives says '%s hardware', but the network of %s has no hardware "
-                 "for %s (%s)",
-                 kind, m->name, kind,
-                 rule[i].kind == COLLECTIVE_BARRIER ? "software.barrier.kind"
-                                                    : "network.collective.kinds");
+                 "software.collectives says '%s %s', but the network of %s has no hardware for %s "
+                 "(%s)",
+                 kind, r->algorithm->name, m->name, kind, key_of(r->kind));
         return false;
     }
     return true;
+}
+
+/* Whether `name` is what some collective by the network is called. */
+static bool names_network(const char *name)
+{
+    for (int i = 0; i < COLLECTIVE_KINDS; i++) {
+        const struct collective_algorithm *a =
+            collective_algorithm_find((enum collective_kind)i, name);
+        if (a != NULL && collective_by_network(a)) return true;
+    }
+    return false;
 }
 
 /* A name goes before the rules. What a rule is for is not looked at: one thread is always right. */
 bool collective_meets(const struct run_spec *r)
 {
     const char *name = r->kernel.algorithm;
+    struct collective_rule rule[COLLECTIVE_MAX_RULES];
+    char why[160];
+    int n;
+    bool meets = false;
     if (!kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE)) return false;
     if (r->machine.network.collective.kinds[0] == '\0') return false;
     /* An algorithm by name is taken whatever the machine's rules say. */
-    if (*name && strcmp(name, "auto") != 0) return strcmp(name, "hardware") == 0;
-    return strstr(r->machine.software.collectives, "hardware") != NULL;
+    if (*name && strcmp(name, "auto") != 0) return names_network(name);
+    if (!collective_rules_parse(r->machine.software.collectives, rule, &n, why, sizeof why))
+        return false;
+    for (int i = 0; i < n; i++) meets = meets || collective_by_network(rule[i].algorithm);
+    return meets;
 }

@@ -2,10 +2,9 @@
  * the field table names. */
 #include "spec/machine_idle.h"
 
-#include "spec/collective_spec.h"
-
 #include <stddef.h>
 
+#include "spec/collective_spec.h"
 #include "spec/run_spec.h"
 
 const char *machine_idle_with_own_nodes(const struct run_spec *r)

@@ -47,10 +47,10 @@ const char *machine_idle_in_programs(const struct run_spec *r);
 const char *machine_idle_without_code(const struct run_spec *r);
 const char *machine_idle_without_collectives(const struct run_spec *r);
 const char *machine_idle_unless_roofline(const struct run_spec *r);
+const char *machine_idle_without_hardware(const struct run_spec *r);
 
 /* machine_dormant_unless_roofline: whether the struct machine_spec at `machine` knows no caches
  * (field.h). */
 bool machine_dormant_unless_roofline(const void *machine);
-const char *machine_idle_without_hardware(const struct run_spec *r);
 
 #endif

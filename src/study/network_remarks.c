@@ -142,7 +142,7 @@ static bool remark_collective(const struct run_spec *r, int64_t *left, struct ar
         return false;
     /* By name or by the machine's rules, exactly as the program will choose. */
     const struct collective_algorithm *by = micro_collective_algorithm(r, &ignored);
-    if (by == NULL || strcmp(by->name, "hardware") != 0) return false;
+    if (by == NULL || !collective_by_network(by)) return false;
     *c = (struct collective_remark){.run = r, .shape = micro_collective_shape(r)};
     if (c->shape.kind == COLLECTIVE_BARRIER) {
         c->seconds = r->machine.software.barrier_time;
