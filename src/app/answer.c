@@ -34,7 +34,9 @@ struct cell {
     int64_t id; /* the first of its runs */
 };
 
-struct table {
+/* The table of the runs. */
+struct answer {
+    const struct plan *plan;
     const struct plan_answer *asked;
     struct arena *arena;
     int nof, nover, against; /* against: column, -1: none */
@@ -82,20 +84,20 @@ static int place_of(struct mark *list, int *n, struct mark m)
     return (*n)++;
 }
 
-static struct cell *cell_at(const struct table *t, int over, int of)
+static struct cell *cell_at(const struct answer *t, int over, int of)
 {
     return &t->cell[(size_t)over * (size_t)t->nof + (size_t)of];
 }
 
 /* The goal there; NAN: no run ended well. */
-static double value_at(const struct table *t, int over, int of)
+static double value_at(const struct answer *t, int over, int of)
 {
     const struct cell *c = cell_at(t, over, of);
     return c->n > 0 ? c->sum / c->n : NAN;
 }
 
 /* One run into its cell. */
-static bool add_run(struct table *t, const struct run_spec *r, struct store *s, struct err *e)
+static bool add_run(struct answer *t, const struct run_spec *r, struct store *s, struct err *e)
 {
     const struct plan_answer *a = t->asked;
     struct outcome o;
@@ -117,7 +119,7 @@ static bool add_run(struct table *t, const struct run_spec *r, struct store *s, 
 }
 
 /* The column that the others are held against has to be there. */
-static bool find_against(struct table *t, struct err *e)
+static bool find_against(struct answer *t, struct err *e)
 {
     const struct plan_answer *a = t->asked;
     const char **name = TAKE(t->arena, t->nof + 1, const char *);
@@ -136,13 +138,13 @@ static bool find_against(struct table *t, struct err *e)
 }
 
 /* How many times worse x is than `than`; 1: the same. */
-static double worse(const struct table *t, double x, double than)
+static double worse(const struct answer *t, double x, double than)
 {
     return t->asked->greatest ? than / x : x / than;
 }
 
 /* The least or greatest value of a line, without the column `against`; NAN: no results. */
-static double best_value(const struct table *t, int over)
+static double best_value(const struct answer *t, int over)
 {
     double best = NAN;
     for (int k = 0; k < t->nof; k++) {
@@ -158,7 +160,7 @@ enum { MOST_VALUES = 4096, MOST_CELLS = 1 << 20 };
 
 /* The values of `of` and `over` in the plan, in its order. Whether they are too many is known as
  * soon as they are, and before any run. */
-static bool list_values(const struct plan *p, struct table *t, struct err *e)
+static bool list_values(const struct plan *p, struct answer *t, struct err *e)
 {
     const struct plan_answer *a = p->answer;
     struct mark *of = TAKE(t->arena, MOST_VALUES + 1, struct mark),
@@ -182,19 +184,19 @@ static bool list_values(const struct plan *p, struct table *t, struct err *e)
 }
 
 /* The runs of the plan as they are stored, each in its cell. */
-static bool table_make(struct table *t, const struct plan *p, struct store *s, struct arena *a,
-                       struct err *e)
+struct answer *answer_read(const struct plan *p, struct store *s, struct arena *a, struct err *e)
 {
-    *t = (struct table){.asked = p->answer, .arena = a};
-    if (!list_values(p, t, e)) return false;
+    struct answer *t = TAKE(a, 1, struct answer);
+    *t = (struct answer){.plan = p, .asked = p->answer, .arena = a};
+    if (!list_values(p, t, e)) return NULL;
     t->cell = TAKE(a, size_product(t->nof, t->nover), struct cell);
     for (int i = 0; i < p->nrun; i++)
-        if (!add_run(t, &p->run[i], s, e)) return false;
-    if (!find_against(t, e)) return false;
+        if (!add_run(t, &p->run[i], s, e)) return NULL;
+    if (!find_against(t, e)) return NULL;
     /* Each line's best is asked for once for each column. */
     t->best = TAKE(a, t->nover, double);
     for (int i = 0; i < t->nover; i++) t->best[i] = best_value(t, i);
-    return true;
+    return t;
 }
 
 /* ---- clauses ---- */
@@ -221,7 +223,7 @@ static const char *last_words(const char *key)
 }
 
 /* "kernel.message 8 B to 64 KiB", or nothing where there is one line. */
-static void add_range(const struct table *t, int first, int last, struct text *out)
+static void add_range(const struct answer *t, int first, int last, struct text *out)
 {
     if (t->asked->over == NULL || t->nover == 0) return;
     /* In the order of the plan, which is that of the file: from the first value to the last. */
@@ -245,14 +247,14 @@ static void add_times(double least, double most, struct text *out)
 }
 
 /* Whether column k has the best value of the line, or one that prints alike. */
-static bool is_best(const struct table *t, int over, int k)
+static bool is_best(const struct answer *t, int over, int k)
 {
     const double x = value_at(t, over, k);
     return k != t->against && !isnan(x) && worse(t, x, t->best[over]) < 1 + 1e-6;
 }
 
 /* How many lines from `first` on column k is best on. */
-static int best_for(const struct table *t, int first, int k)
+static int best_for(const struct answer *t, int first, int k)
 {
     int end = first;
     while (end < t->nover && is_best(t, end, k)) end++;
@@ -260,7 +262,7 @@ static int best_for(const struct table *t, int first, int k)
 }
 
 /* Of the columns that are best on line `first` the one that stays so longest; -1: none. */
-static int longest_best(const struct table *t, int first)
+static int longest_best(const struct answer *t, int first)
 {
     int best = -1, most = 0;
     for (int k = 0; k < t->nof; k++)
@@ -272,7 +274,7 @@ static int longest_best(const struct table *t, int first)
 }
 
 /* How many times worse the next column is on this line. */
-static double next_to(const struct table *t, int over, int best)
+static double next_to(const struct answer *t, int over, int best)
 {
     double next = INFINITY;
     for (int k = 0; k < t->nof; k++) {
@@ -284,7 +286,7 @@ static double next_to(const struct table *t, int over, int best)
 }
 
 /* " (the next: 1.1 to 1.4 times)": on lines first .. end - 1. */
-static void add_next(const struct table *t, int first, int end, int best, bool named,
+static void add_next(const struct answer *t, int first, int end, int best, bool named,
                      struct text *out)
 {
     double least = INFINITY, most = 0;
@@ -304,7 +306,7 @@ static void add_next(const struct table *t, int first, int end, int best, bool n
 /* "'a' has the least makespan for n 16 to 64 (the next: 1.1 to 1.4 times), 'b' for ..." Lines that
  * follow each other and have one best column are told together. Where the others are held against
  * one column anyway, this is told only if another one is best on some lines than on others. */
-static void add_best(const struct table *t, struct text *out)
+static void add_best(const struct answer *t, struct text *out)
 {
     int told = 0;
     /* One value, or one and what it is compared with, has nothing to be better than. */
@@ -330,7 +332,7 @@ static void add_best(const struct table *t, struct text *out)
 }
 
 /* "against 'as it is' makespan is 0.52 to 0.99 times with 'a', ..." */
-static void add_against(const struct table *t, struct text *out)
+static void add_against(const struct answer *t, struct text *out)
 {
     int told = 0;
     for (int k = 0; k < t->nof && t->against >= 0; k++) {
@@ -355,7 +357,7 @@ static void add_against(const struct table *t, struct text *out)
 }
 
 /* The last column behind `against` up to which all are good enough on this line. */
-static int good_until(const struct table *t, int over)
+static int good_until(const struct answer *t, int over)
 {
     int last = t->against;
     /* The order of the file is that of the values: more and more of something. */
@@ -369,7 +371,7 @@ static int good_until(const struct table *t, int over)
 }
 
 /* "within 5 % of '1': up to '4' for n 64 to 256, '2' for n 512" */
-static void add_within(const struct table *t, struct text *out)
+static void add_within(const struct answer *t, struct text *out)
 {
     if (t->asked->within <= 0) return;
     text_add(out, "%swithin %.3g %% of '%s': ", out->length > 0 ? "; " : "", 100 * t->asked->within,
@@ -389,7 +391,7 @@ bool answer_check(const struct plan *p, struct err *e)
     struct expression_value v;
     const struct plan_answer *a = p->answer;
     if (a == NULL) return true;
-    struct table t = {.asked = a, .arena = arena_create()};
+    struct answer t = {.asked = a, .arena = arena_create()};
     const bool ok =
         list_values(p, &t, e) &&
         outcome_value(a->goal, &p->run[0], &outcome_unknown, "answer", a->file, a->line, &v, e);
@@ -397,25 +399,18 @@ bool answer_check(const struct plan *p, struct err *e)
     return ok;
 }
 
-bool answer_sentence(const struct plan *p, struct store *s, struct text *out, struct err *e)
+void answer_sentence(const struct answer *t, struct text *out)
 {
-    struct arena *a = arena_create();
     /* The clauses in the order of the questions: which, how much, how far. */
     struct text said = {0};
-    struct table t;
-    const bool ok = table_make(&t, p, s, a, e);
-    if (ok) {
-        add_best(&t, &said);
-        add_against(&t, &said);
-        add_within(&t, &said);
-        text_add(out, "%s",
-                 said.length > 0 ? said.s : "one value alone: there is nothing to compare");
-        if (t.missing > 0) text_add(out, "; %d runs have no result", t.missing);
-        text_add(out, ".");
-    }
+    add_best(t, &said);
+    add_against(t, &said);
+    add_within(t, &said);
+    text_add(out, "%s", said.length > 0 ? said.s : "one value alone: there is nothing to compare");
+    if (t->missing > 0)
+        text_add(out, "; %d run%s no result", t->missing, t->missing > 1 ? "s have" : " has");
+    text_add(out, ".");
     text_free(&said);
-    arena_destroy(a);
-    return ok;
 }
 
 /* ---- picture ---- */
@@ -434,7 +429,7 @@ static struct plot_axis_name add_name(const char *word, const char *otherwise, e
 
 /* Whether the axis is what is chosen: without `over`, or where that is a number with more values
  * than curves can be told apart by. Then the curves are those of `over`. */
-static bool is_along(const struct table *t)
+static bool is_along(const struct answer *t)
 {
     enum { MOST_CURVES = 6 };
     bool numbers = t->nof > MOST_CURVES;
@@ -444,7 +439,7 @@ static bool is_along(const struct table *t)
 }
 
 /* A row for each cell: place on the axis, curve, value. */
-static bool fill(const struct table *t, struct store *s, bool *numbers, struct err *e)
+static bool fill(const struct answer *t, struct store *s, bool *numbers, struct err *e)
 {
     const bool along = is_along(t);
     *numbers = true;
@@ -473,36 +468,32 @@ static bool fill(const struct table *t, struct store *s, bool *numbers, struct e
     return ok;
 }
 
-bool answer_draw(const struct plan *p, struct store *s, const char *dir, struct err *e)
+bool answer_draw(const struct answer *t, struct store *s, const char *dir, struct err *e)
 {
-    struct arena *a = arena_create();
-    struct table t;
     struct text sql = {0}, told = {0};
-    /* The same table again: it is small, and the sentence needs no picture. */
-    bool numbers, ok = table_make(&t, p, s, a, e) && fill(&t, s, &numbers, e);
+    bool numbers, ok = fill(t, s, &numbers, e);
     if (ok) {
-        const bool along = is_along(&t);
-        const char *axis = along ? p->answer->of_word : p->answer->over_word;
-        const char *curve = p->answer->over == NULL ? ""
-                            : along                 ? p->answer->over_word
-                                                    : p->answer->of_word;
+        const bool along = is_along(t);
+        const char *axis = along ? t->asked->of_word : t->asked->over_word;
+        const char *curve = t->asked->over == NULL ? ""
+                            : along                ? t->asked->over_word
+                                                   : t->asked->of_word;
         /* Names of columns are made of letters and digits: no text of a file gets into the query,
          * and what stands in the table is bound. */
-        struct plot_request r = {.by = *curve ? "curve" : "", .title = p->question, .as = p->name};
+        struct plot_request r = {.by = *curve ? "curve" : "", .title = t->plan->question, .as = t->plan->name};
         text_add(&sql, "SELECT run_id, x AS \"");
         r.x_name = add_name(last_words(axis), "x",
-                            numbers ? (along ? t.of : t.over)->unit : UNIT_NONE, &sql);
+                            numbers ? (along ? t->of : t->over)->unit : UNIT_NONE, &sql);
         text_add(&sql, "\", value AS \"");
         /* A name with a unit of its own has said it. */
-        const char *goal = goal_name(p->answer);
+        const char *goal = goal_name(t->asked);
         r.value_name =
-            add_name(goal, "value", strstr(goal, " [") != NULL ? UNIT_NONE : t.unit, &sql);
+            add_name(goal, "value", strstr(goal, " [") != NULL ? UNIT_NONE : t->unit, &sql);
         text_add(&sql, "\", curve FROM answer_cell ORDER BY rowid");
         r.query = sql.s;
         ok = plot_draw(s, plan_data_dir(), &r, dir, &told, e);
     }
     text_free(&sql);
     text_free(&told);
-    arena_destroy(a);
     return ok;
 }

@@ -10,12 +10,15 @@
  * `answer:`; false with ERR_DATA at its line. */
 bool answer_check(const struct plan *p, struct err *e);
 
-/* answer_sentence: what the stored runs of `p` say, appended to *out without a line end. Returns
- * false with ERR_DATA (`against` names no value of `of`), or as store_select. */
-bool answer_sentence(const struct plan *p, struct store *s, struct text *out, struct err *e);
+/* answer_read: the stored runs of `p` as a table in `a`; p is borrowed. Returns NULL with ERR_DATA
+ * (`against` names no value of `of`), or as store_select. */
+struct answer *answer_read(const struct plan *p, struct store *s, struct arena *a, struct err *e);
+
+/* answer_sentence: what it says, appended to *out without a line end. */
+void answer_sentence(const struct answer *t, struct text *out);
 
 /* answer_draw: the same rows as the picture NAME.svg and .png of the scenario NAME in folder `dir`,
  * as plot_draw does it. */
-bool answer_draw(const struct plan *p, struct store *s, const char *dir, struct err *e);
+bool answer_draw(const struct answer *t, struct store *s, const char *dir, struct err *e);
 
 #endif

@@ -281,12 +281,17 @@ static bool answer_question(const struct common *c, const struct plan *p, const 
     /* A part of the runs answers nothing. */
     if (asked->part.shard.of > 0 || asked->part.point != NULL) return true;
     struct text said = {0};
-    bool ok = answer_sentence(p, s, &said, e);
-    if (ok) printf("\n%s\n%s\n", p->question, said.s);
-    fflush(stdout);
-    ok = ok && answer_draw(p, s, c->directory, e);
+    struct arena *a = arena_create();
+    const struct answer *x = answer_read(p, s, a, e);
+    if (x != NULL) {
+        answer_sentence(x, &said);
+        printf("\n%s\n%s\n", p->question, said.s);
+        fflush(stdout);
+    }
+    const bool ok = x != NULL && answer_draw(x, s, c->directory, e);
     if (ok && !c->quiet) printf("%s/%s.png\n", c->directory, p->name);
     text_free(&said);
+    arena_destroy(a);
     return ok;
 }
 
