@@ -93,8 +93,12 @@ static bool open_members(struct group *g, struct program_run *r, struct arena *s
         if (i == g->own || g->set->idle[i]) continue;
         if (!open_member(g, i, r, e)) return false;
     }
-    g->member[g->own] = (struct member){.runs = true, .run = r, .scratch = scratch, .arena = a,
-                                        .out = out, .record = omission_record(&r->spec, r->order.keep)};
+    g->member[g->own] = (struct member){.runs = true,
+                                        .run = r,
+                                        .scratch = scratch,
+                                        .arena = a,
+                                        .out = out,
+                                        .record = omission_record(&r->spec, r->order.keep)};
     /* Each attempt starts from here: a program that asks for many keeps the memory of one. */
     for (int i = 0; i < g->set->n; i++) {
         struct member *m = &g->member[i];
@@ -177,14 +181,14 @@ bool beside_attempts(struct program_run *r, struct arena *scratch, struct arena 
                        r->spec.job.name);
     /* What processes cannot share, one does. */
     if (r->order.hosts && r->order.hosts->rank > 0) return true;
-    /* Of the heap: 64 members are too many for a stack. */
+    /* Of the heap: so many members are too many for a stack. */
     struct group *g = memory_zeroed(1, sizeof *g);
     g->set = r->spec.jobs;
     g->own = r->spec.job.number - 1;
-    /* A program may change its settings and ask again; then all start once more, since what the
-     * others met has changed. */
     /* Whatever fails, everything that was opened is closed at the end. */
     bool ok = open_members(g, r, scratch, a, out, e);
+    /* A program may change its settings and ask again; then all start once more, since what the
+     * others met has changed. */
     do ok = ok && prepare(g, e) && launch(g, world, e);
     while (ok && once_more(g));
     if (r->order.threads > 1 || r->order.hosts)

@@ -282,13 +282,18 @@ static bool hand_over(struct campaign *c)
     return true;
 }
 
-/* Whether a run executes code of people, which may crash, loop for ever, or leave memory behind. */
+static bool is_code(const struct program_spec *p)
+{
+    return p->kind == PROGRAM_KERNEL || p->kind == PROGRAM_MPI;
+}
+
+/* Whether a run executes code of people, its own or of a job beside it, which may crash, loop for
+ * ever, or leave memory behind. */
 static bool loads_code(const struct run_spec *spec)
 {
-    bool loads = spec->program.kind == PROGRAM_KERNEL || spec->program.kind == PROGRAM_MPI;
+    bool loads = is_code(&spec->program);
     for (int i = 0; spec->jobs && i < spec->jobs->n && !loads; i++)
-        loads = !spec->jobs->idle[i] && (spec->jobs->job[i]->program.kind == PROGRAM_KERNEL ||
-                                         spec->jobs->job[i]->program.kind == PROGRAM_MPI);
+        loads = !spec->jobs->idle[i] && is_code(&spec->jobs->job[i]->program);
     return loads;
 }
 

@@ -12,8 +12,8 @@
 /* What interrupt_end sends to the thread alone. */
 enum { ENOUGH = SIGUSR2 };
 
-/* The signals of a terminal and of kill, but for those that are ignored: blocked ones reach
- * whoever waits for them, ignored or not. */
+/* The signals of a terminal and of kill, but for those that are ignored: a signal that is blocked
+ * reaches whoever waits for it, ignored or not. */
 static void fill(sigset_t *set)
 {
     static const int wanted[] = {SIGINT, SIGTERM};
@@ -57,27 +57,27 @@ static void *wait_for_signal(void *context)
  * Ctrl-C would be stored as a failed run. */
 void interrupt_begin(struct interrupt *x, const char *database, int todo)
 {
-    sigset_t set;
+    sigset_t enough, all;
     *x = (struct interrupt){.database = database, .todo = todo};
     fill(&x->wanted);
     /* Blocked by then: somebody waits for it already. */
     pthread_sigmask(SIG_SETMASK, NULL, &x->before);
     const bool waited = sigismember(&x->before, SIGINT) || sigismember(&x->before, SIGTERM);
     if (todo == 0 || waited) return;
-    set = x->wanted;
-    sigaddset(&set, ENOUGH);
-    if (pthread_sigmask(SIG_BLOCK, &set, &x->before) != 0) return;
+    sigemptyset(&enough);
+    sigaddset(&enough, ENOUGH);
+    sigorset(&all, &x->wanted, &enough);
+    if (pthread_sigmask(SIG_BLOCK, &all, &x->before) != 0) return;
     sem_init(&x->waits, 0, 0);
     x->on = pthread_create(&x->thread, NULL, wait_for_signal, x) == 0;
     /* A thread takes memory when it begins. Were a worker forked meanwhile, the lock of an
      * allocator that does not mind forks, as the address sanitizer's, would be held in it for ever.
      */
     while (x->on && sem_wait(&x->waits) != 0 && errno == EINTR) continue;
-    /* The thread has begun with all three blocked; here the last one acts as before. */
-    set = x->before;
-    for (int number = SIGINT; x->on && number <= SIGTERM; number++)
-        if (sigismember(&x->wanted, number)) sigaddset(&set, number);
-    pthread_sigmask(SIG_SETMASK, &set, NULL);
+    /* The thread has begun with all of them blocked; here the one that ends it acts as before. The
+     * others stay blocked without a break: one that waits already is the thread's. */
+    if (x->on && !sigismember(&x->before, ENOUGH)) pthread_sigmask(SIG_UNBLOCK, &enough, NULL);
+    if (!x->on) pthread_sigmask(SIG_SETMASK, &x->before, NULL);
 }
 
 void interrupt_end(struct interrupt *x)

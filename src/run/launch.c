@@ -138,10 +138,10 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
 bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec *m, uint64_t seed,
                  struct run_heartbeat *heartbeat, struct arena *world, struct err *e)
 {
-    struct world_job own[WORLD_JOBS];
-    struct world_load load[WORLD_JOBS];
-    struct launch l[WORLD_JOBS];
-    CHECK(n <= WORLD_JOBS);
+    struct world_job own[JOB_MOST];
+    struct world_load load[JOB_MOST];
+    struct launch l[JOB_MOST];
+    CHECK(n <= JOB_MOST);
     for (int i = 0; i < n; i++) {
         const struct launch_job *j = &job[i];
         own[i] = (struct world_job){j->name, NULL,      j->nrank, j->placement, j->start_ps,

@@ -214,9 +214,8 @@ static void tell_node(const struct run_spec *spec, const struct program_estimate
     struct node_use use;
     struct err ignored;
     err_clear(&ignored);
-    const bool known = !spec->kernel.own && isfinite(k->rank_bytes);
-    const int64_t set = spec->kernel.own ? spec->program.working_set
-                                         : (known ? (int64_t)k->rank_bytes : 0);
+    const double own = isfinite(k->rank_bytes) ? k->rank_bytes : 0;
+    const int64_t set = spec->kernel.own ? spec->program.working_set : (int64_t)own;
     text[0] = '\0';
     if (node_use_make(&spec->machine, spec->nrank, set, &use, &ignored))
         node_use_tell(&spec->machine.node, &use, text, size);

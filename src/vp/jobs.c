@@ -16,10 +16,10 @@
 #include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
 #include "vp/explain.h"
+#include "vp/meeting.h"
 #include "vp/offload.h"
 #include "vp/team.h"
 #include "vp/world_parts.h"
-#include "vp/meeting.h"
 
 struct jobs {
     int n;
@@ -44,13 +44,6 @@ static void make_load(struct jobs *j, struct run_heartbeat *heartbeat, struct ar
         const int64_t stack = l->stack_bytes > 0 ? l->stack_bytes : WORLD_STACK_BYTES;
         if (stack > j->load.stack_bytes) j->load.stack_bytes = stack;
     }
-}
-
-/* Whether no message of any job shakes hands: then a node's messages come in order. */
-static bool eager(const struct machine_spec *m, const struct world_load *l)
-{
-    /* As world.c asks of one program. */
-    return (!l->timed || l->no_synchronous) && software_all_eager(&m->software, l->largest_message);
 }
 
 /* The ranks of job i, and those of others on its nodes: they share caches and memories. */
@@ -104,7 +97,7 @@ static void make_world(struct jobs *j, int i, int first)
     w->vp = j->whole.vp + first;
     w->nrank = w->nown = b->load->nrank;
     w->nstage = b->load->nstage;
-    w->eager_only = eager(w->machine, b->load);
+    w->eager_only = world_all_eager(w->machine, b->load);
     /* Its messages carry its number, and its times count from its start. */
     w->job = i;
     w->start = b->start_ps;
@@ -121,7 +114,7 @@ static bool build(struct jobs *j, struct err *e)
 {
     struct world *w = &j->whole;
     /* Jobs that are idle have places, too. */
-    struct placement_job place[WORLD_JOBS];
+    struct placement_job place[JOB_MOST];
     for (int i = 0; i < j->n; i++)
         place[i] =
             (struct placement_job){j->job[i].name, j->job[i].placement, j->job[i].nrank};
@@ -282,7 +275,7 @@ bool world_run_jobs(const struct machine_spec *m, const struct world_job *job, i
     struct message_pool pool = {0};
     struct jobs j = {.n = n, .job = job};
     const struct arena_mark begin = scratch ? arena_mark(scratch) : (struct arena_mark){0};
-    CHECK(n >= 1 && n <= WORLD_JOBS);
+    CHECK(n >= 1 && n <= JOB_MOST);
     make_load(&j, heartbeat, scratch);
     CHECK(j.load.nrank > 0);
     j.whole = (struct world){
@@ -297,7 +290,6 @@ bool world_run_jobs(const struct machine_spec *m, const struct world_job *job, i
         .pool = &pool,
         .load = &j.load,
         .software = software_cost_make(&m->software),
-        .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
         .eager_only = true,
         .noisy = m->noise.compute_cv > 0,
@@ -306,7 +298,7 @@ bool world_run_jobs(const struct machine_spec *m, const struct world_job *job, i
     pool.arena = j.whole.scratch;
     /* The network may promise order only if all jobs do. */
     for (int i = 0; i < n; i++)
-        if (job[i].load && !eager(m, job[i].load)) j.whole.eager_only = false;
+        if (job[i].load && !world_all_eager(m, job[i].load)) j.whole.eager_only = false;
     const bool ok = build(&j, e);
     if (ok) run(&j, seed);
     fiber_pool_destroy(j.whole.fibers);

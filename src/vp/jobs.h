@@ -23,10 +23,8 @@ struct world_job {
     struct run_result *out;       /* as of world_run */
 };
 
-enum { WORLD_JOBS = 64 }; /* at most at once */
-
-/* world_run_jobs: run n jobs on machine `m`, whose own placement does not matter, to the end of
- * all. `seed`: of the background traffic; `scratch` as in world_load.
+/* world_run_jobs: run n jobs (at most JOB_MOST) on machine `m`, whose own placement does not
+ * matter, to the end of all. `seed`: of the background traffic; `scratch` as in world_load.
  *
  *   When one job fails, or waits for ever, no other has a result: RUN_FAILED, and its text names
  * that job. Returns false only for ERR_CONFIG or ERR_INTERNAL. */

@@ -26,7 +26,6 @@
 #include "vp/vp.h"
 #include "vp/world_parts.h"
 
-
 /* The last step of a trip. A hand-shake goes its own way, all else to whoever matches. */
 void world_arrived(struct message *m)
 {
@@ -235,6 +234,12 @@ void world_name_stages(struct run_result *r, int nstage, const char *const *name
     r->nstage = nstage + 1;
 }
 
+bool world_all_eager(const struct machine_spec *m, const struct world_load *load)
+{
+    return (!load->timed || load->no_synchronous) &&
+           software_all_eager(&m->software, load->largest_message);
+}
+
 bool world_make_network(struct world *w, bool links, struct err *e)
 {
     w->net = net_create(w->machine, w->topology, w->sim, w->scratch, world_deliver, w, links, e);
@@ -358,9 +363,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
         .nstage = load->nstage,
         .load = load,
         .shared_channel = m->software.shared_bandwidth > 0,
-        /* Then a node's messages come in order and the network may use fewer events. */
-        .eager_only = (!load->timed || load->no_synchronous) &&
-                      software_all_eager(&m->software, load->largest_message),
+        .eager_only = world_all_eager(m, load),
         .noisy = m->noise.compute_cv > 0,
     };
     struct published published = {.lock = PTHREAD_MUTEX_INITIALIZER};

@@ -7,6 +7,10 @@
 
 enum { WORLD_STACK_BYTES = 64 * 1024 }; /* of a rank, where its program says nothing */
 
+/* world_all_eager: whether no message of a program shakes hands. Then those of a node come in
+ * order, and the network may use fewer events. */
+bool world_all_eager(const struct machine_spec *m, const struct world_load *load);
+
 /* world_arrived: the end of a message's trip on one host thread. */
 void world_arrived(struct message *m);
 
