@@ -57,20 +57,13 @@ static bool measure_code(const struct common *c, const struct effort *effort,
     struct plan_options o = common_plan(c);
     struct err without;
     err_clear(&without);
-    out->code.clock = calibration_clock();
     /* A scenario with a program: reading it compiles, once for this computer. */
     out->has_code = plan_read(&p, "calibrate-code", &o, &without);
     if (!out->has_code && !c->quiet)
         fprintf(stderr, "mimdsim: the code of programs in one file is not measured: %s\n",
                 without.text);
     /* What no loop tells is priced as measured before. */
-    const struct rates *r = &out->rates;
-    const double hz = out->code.clock;
-    const struct node_spec node = {.flop_rate = r->flop > 0 ? 1 / r->flop : 1e15,
-                                   .div_cycles = r->div * hz,
-                                   .sqrt_cycles = r->sqrt * hz,
-                                   .trig_cycles = r->trig * hz,
-                                   .copy_bandwidth = 1 / r->copy};
+    const struct node_spec node = rates_node(&out->rates, out->clock);
     const bool ok = !out->has_code ||
                     code_rates_measure(&p, &node, effort->kernels, effort->seconds, c->quiet,
                                        &out->code, e);
@@ -132,7 +125,6 @@ static bool measure_collectives(struct job *job, const struct common *c,
     bool ok = comm != NULL && plan_read(&p, "calibrate-collectives", &o, e);
     /* The first process predicts with what has been measured so far; the others only take part. */
     if (ok) {
-        out->clock = calibration_clock();
         machine = calibration_machine(out, &p.run[0].machine);
         ok = collective_times_measure(&p, &job->h, comm, job->h.rank == 0 ? &machine : NULL,
                                       effort->kernels, effort->seconds / 4, effort->large,
@@ -154,6 +146,7 @@ static bool measure(struct job *job, const struct common *c, bool quick, struct 
     const struct effort effort = effort_of(quick);
     const struct host_load_begin load = host_load_start();
     const double own = host_processor_seconds();
+    out->clock = calibration_clock();
     if (!measure_rates(job, c, &effort, out, e) || !measure_messages(job, &effort, out, e) ||
         !measure_collectives(job, c, &effort, out, e))
         return false;
@@ -170,7 +163,6 @@ static bool measure(struct job *job, const struct common *c, bool quick, struct 
     host_processor_name(out->processor, (int)sizeof out->processor);
     text_copy(out->library, sizeof out->library, job->h.call->library);
     host_date(out->date);
-    out->clock = calibration_clock();
     return true;
 }
 

@@ -29,14 +29,7 @@ struct machine_spec calibration_machine(const struct calibration *c,
 {
     struct machine_spec m = *base;
     struct fitted_segment fitted[SOFTWARE_MAX_SEGMENTS];
-    const struct rates *r = &c->rates;
-    m.node = (struct node_spec){.flop_rate = r->flop > 0 ? 1 / r->flop : 1e15,
-                                .clock = c->clock,
-                                .div_cycles = r->div * c->clock,
-                                .sqrt_cycles = r->sqrt * c->clock,
-                                .trig_cycles = r->trig * c->clock,
-                                .call_time = r->call,
-                                .copy_bandwidth = 1 / r->copy};
+    m.node = rates_node(&c->rates, c->clock);
     m.software = (struct software_spec){.eager_bytes = -1, .barrier = BARRIER_SOFTWARE};
     m.software.nsegment = c->has_messages ? segments_of(&c->messages, fitted) : 0;
     for (int i = 0; i < m.software.nsegment; i++) m.software.segment[i] = fitted[i].segment;

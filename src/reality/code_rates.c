@@ -106,7 +106,6 @@ bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, str
 struct simulated {
     const struct plan *plan;
     const struct node_spec *node;
-    double clock;
     struct run_cache *cache;
 };
 
@@ -118,7 +117,6 @@ static bool simulated_time(void *context, int i, const double *price, double *se
     struct arena *a = arena_create();
     struct run_result *r = TAKE(a, 1, struct run_result);
     spec.machine.node = *x->node;
-    spec.machine.node.clock = x->clock;
     /* A price of nothing at all would switch the finer rule off, or ask for node.div. */
     spec.machine.node.code = (struct code_spec){.issue = fmax(price[0], 1e-6),
                                                 .div = fmax(price[1], 1e-6),
@@ -143,7 +141,7 @@ static void name_of(const struct run_spec *spec, struct code_sample *s)
 bool code_rates_measure(const struct plan *p, const struct node_spec *node, int samples,
                         double seconds, bool quiet, struct code_rates *out, struct err *e)
 {
-    struct simulated x = {p, node, out->clock, run_cache_create()};
+    struct simulated x = {p, node, run_cache_create()};
     struct host_comm *comm = host_comm_create(NULL, e);
     struct progress progress = progress_make("loops", p->nrun, quiet);
     bool ok = comm != NULL;

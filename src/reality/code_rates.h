@@ -15,9 +15,9 @@ struct code_sample {
     int samples, disturbed;
 };
 
-/* Prices in cycles of `clock`, in the order of names: node.code.issue, div, root, chain, step. */
+/* Prices in cycles of the processor's clock, in the order of names: node.code.issue, div, root,
+ * chain, step. */
 struct code_rates {
-    double clock;              /* [Hz] */
     double price[CODE_PRICES]; /* [cycles] */
     double residual, median_residual; /* relative: the largest, the median */
     int n;

@@ -152,6 +152,18 @@ bool rates_fit(struct rates *r)
     return true;
 }
 
+/* Operations that cost nothing measurable are done at a rate that no computer has. */
+struct node_spec rates_node(const struct rates *r, double clock)
+{
+    return (struct node_spec){.flop_rate = r->flop > 0 ? 1 / r->flop : 1e15,
+                              .clock = clock,
+                              .div_cycles = r->div * clock,
+                              .sqrt_cycles = r->sqrt * clock,
+                              .trig_cycles = r->trig * clock,
+                              .call_time = r->call,
+                              .copy_bandwidth = 1 / r->copy};
+}
+
 bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int samples,
                       double seconds, struct run_cache *cache, struct rate_sample *s, struct err *e)
 {

@@ -36,6 +36,9 @@ bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int s
                       double seconds, struct run_cache *cache, struct rate_sample *s,
                       struct err *e);
 
+/* rates_node: a processor with these prices, of `clock` [Hz]. */
+struct node_spec rates_node(const struct rates *r, double clock);
+
 /* rates_measure: run the points of plan `p` on one rank in this process, each for at most `seconds`
  * after at least a few repetitions, and fit prices to them. ERR_BUSY when the host disturbs too
  * many of the repetitions; else as run_real. */
