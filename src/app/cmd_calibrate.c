@@ -151,12 +151,10 @@ static bool measure(struct job *job, const struct common *c, bool quick, struct 
         !measure_collectives(job, c, &effort, out, e))
         return false;
     int64_t used = (int64_t)((host_processor_seconds() - own) * 1e9);
-    int64_t set = (int64_t)host_processor_set(), *all = NULL;
-    (void)all;
     if (!job->h.call->reduce(HOSTS_SUM, &used, 1))
         return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
     /* Bound processes have a processor each: as many as the job has, at least. */
-    out->processors = host_processors((uint64_t)set);
+    out->processors = host_processors(host_processor_set());
     if (out->processors < job->h.size) out->processors = job->h.size;
     out->load = host_load_read(&load, (double)used * 1e-9);
     host_name(out->host, (int)sizeof out->host);

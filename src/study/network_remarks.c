@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "kernel/micro_collective.h"
 #include "machine/placement.h"
+#include "measure/column.h"
 #include "spec/collective_spec.h"
 #include "spec/kernel_spec.h"
 #include "vp/meeting.h"
@@ -67,34 +68,50 @@ static int runs_as(const struct plan *p, int i)
     return n;
 }
 
+/* What is said of a rule at a level: its words, what it does, where it decides at this level, what
+ * the level does not know, and how many runs have both. */
+struct rule_remark {
+    const char *rule, *level, *what, *decides, *leaves_out;
+    int runs;
+};
+
+#define RULE(member) COLUMN_STRING, .offset = offsetof(struct rule_remark, member)
+
+static const struct column rule_column[] = {
+    {"at_the_level", RULE(decides), .doc = "where it decides there"},
+    {"left_out", RULE(leaves_out), .doc = "what the level does not know"},
+    {"level", RULE(level), .doc = "of the network"},
+    {"rule", RULE(rule), .doc = "network.routing"},
+    {"runs", COLUMN_INT, .offset = offsetof(struct rule_remark, runs), .doc = "that have both"},
+    {"what", RULE(what), .doc = "what it does"},
+};
+static const struct column_table rule_columns = COLUMNS(rule_column);
+
 /* Levels by their own words; one that is settled later says nothing yet. */
-static void level_words(const struct run_spec *r, const char **decides, const char **leaves_out)
+static struct rule_remark remark_rule(const struct network_spec *n, int runs)
 {
-    const enum network_level level = r->machine.network.level;
     /* auto-tolerance is no level yet: `run` measures which one will do. */
-    const bool open = level == LEVEL_AUTO_TOLERANCE;
-    const bool rule = r->machine.network.routing != ROUTING_DETERMINISTIC;
-    *decides = open   ? "known when the level is"
-               : rule ? at_level[level].decides
-                      : "the same route at every level";
-    *leaves_out = open   ? "known when the level is"
-                  : rule ? at_level[level].leaves_out
-                         : one_route[level];
+    const bool open = n->level == LEVEL_AUTO_TOLERANCE;
+    const bool rule = n->routing != ROUTING_DETERMINISTIC;
+    struct rule_remark x = {.rule = routing_rule_name(n->routing),
+                            .level = network_level_name(n->level),
+                            .what = routing_rule_doc(n->routing),
+                            .decides = "known when the level is",
+                            .leaves_out = "known when the level is",
+                            .runs = runs};
+    if (open) return x;
+    x.decides = rule ? at_level[n->level].decides : "the same route at every level";
+    x.leaves_out = rule ? at_level[n->level].leaves_out : one_route[n->level];
+    return x;
 }
 
-/* One line: rule and level, how many runs have both, what the rule does, where it decides at this
- * level and what the level does not know. */
-static void print_rule(const struct plan *p, int i, int runs, FILE *out)
+/* The same as one line. */
+static void print_rule(const struct rule_remark *x, int all, FILE *out)
 {
-    const struct run_spec *r = &p->run[i];
-    const enum routing_rule rule = r->machine.network.routing;
-    const char *decides, *leaves_out;
-    level_words(r, &decides, &leaves_out);
-    fprintf(out, "routing %s, level %s", routing_rule_name(rule),
-            network_level_name(r->machine.network.level));
+    fprintf(out, "routing %s, level %s", x->rule, x->level);
     /* Of a plan whose runs are all alike the number says nothing. */
-    if (runs < p->nrun) fprintf(out, " (%d of %d runs)", runs, p->nrun);
-    fprintf(out, ": %s; %s; left out: %s\n", routing_rule_doc(rule), decides, leaves_out);
+    if (x->runs < all) fprintf(out, " (%d of %d runs)", x->runs, all);
+    fprintf(out, ": %s; %s; left out: %s\n", x->what, x->decides, x->leaves_out);
 }
 
 /* Levels that no run of the plan has, once, where a choice would be another there. */
@@ -107,10 +124,9 @@ static void print_other_levels(const struct plan *p, FILE *out)
         rule = rule || (has_links(&p->run[i]) && n->routing != ROUTING_DETERMINISTIC);
         if (n->level != LEVEL_AUTO_TOLERANCE) used[n->level] = true;
     }
-    /* The finest first: it leaves out least. */
-    /* Levels that were used have lines of their own above. */
+    /* The finest first: it leaves out least. Levels that were used have lines of their own above,
+     * and the one route needs no such list: its lines say all there is. */
     network_levels_by_fineness(order);
-    /* The one route needs no such list: its lines say all there is. */
     for (int k = 0; rule && k < LEVELS; k++)
         if (!used[order[k]])
             fprintf(out, "  at level %s: %s; left out: %s\n", network_level_name(order[k]),
@@ -125,10 +141,25 @@ static const int64_t MOST_RANKS = 1 << 24;
 /* A collective by hardware: whose it is, what it moves, over how many links, and how long. */
 struct collective_remark {
     const struct run_spec *run;
-    struct collective_shape shape;
+    const char *what;
+    int64_t bytes; /* of the vector */
     int links;
     double seconds;
 };
+
+#define CALL(member) .offset = offsetof(struct collective_remark, member)
+#define OF_RUN(member)                                                                             \
+    .part = PART(struct collective_remark, run), .offset = offsetof(struct run_spec, member)
+
+static const struct column collective_column[] = {
+    {"bytes", COLUMN_INT64, CALL(bytes), .doc = "of the vector"},
+    {"collective", COLUMN_STRING, CALL(what), .doc = "its name"},
+    {"links", COLUMN_INT, CALL(links), .doc = "of the tree, up and down"},
+    {"machine", COLUMN_CHARS, OF_RUN(machine.name), .doc = "whose network does it"},
+    {"ranks", COLUMN_INT, OF_RUN(nrank), .doc = "that take part"},
+    {"seconds", COLUMN_REAL, CALL(seconds), .doc = "from the last rank's entry"},
+};
+static const struct column_table collective_columns = COLUMNS(collective_column);
 
 /* Whether a built-in benchmark calls one of the network's, and how long that takes. *left: ranks
  * that may still be looked at; below 0: there were more. */
@@ -143,8 +174,10 @@ static bool remark_collective(const struct run_spec *r, int64_t *left, struct ar
     /* By name or by the machine's rules, exactly as the program will choose. */
     const struct collective_algorithm *by = micro_collective_algorithm(r, &ignored);
     if (by == NULL || !collective_by_network(by)) return false;
-    *c = (struct collective_remark){.run = r, .shape = micro_collective_shape(r)};
-    if (c->shape.kind == COLLECTIVE_BARRIER) {
+    const struct collective_shape shape = micro_collective_shape(r);
+    *c = (struct collective_remark){
+        .run = r, .what = collective_name(shape.kind), .bytes = shape.count * shape.element};
+    if (shape.kind == COLLECTIVE_BARRIER) {
         c->seconds = r->machine.software.barrier_time;
         return true;
     }
@@ -154,9 +187,7 @@ static bool remark_collective(const struct run_spec *r, int64_t *left, struct ar
     if (!t || !placement_create(&place, &r->machine, t, r->nrank, a, &ignored)) return false;
     /* By the simulation's own functions: no formula is written twice. */
     c->links = meeting_links(&r->machine, t, &place);
-    c->seconds =
-        (double)meeting_time(&r->machine.network, c->links, c->shape.count * c->shape.element) /
-        SIM_PS_PER_S;
+    c->seconds = (double)meeting_time(&r->machine.network, c->links, c->bytes) / SIM_PS_PER_S;
     return true;
 }
 
@@ -167,9 +198,9 @@ static void print_collective(const struct collective_remark *c, FILE *out)
     char time[48];
     units_print(c->seconds, UNIT_TIME, time, (int)sizeof time);
     fprintf(out, "%s of %lld B on %d ranks by the network of %s: %s after the last rank's entry",
-            collective_name(c->shape.kind), (long long)(c->shape.count * c->shape.element),
-            c->run->nrank, c->run->machine.name, time);
-    if (c->shape.kind != COLLECTIVE_BARRIER) fprintf(out, ", over %d links", c->links);
+            c->what, (long long)c->bytes, c->run->nrank, c->run->machine.name, time);
+    /* A barrier has a time of its own, whatever its way. */
+    if (c->links > 0) fprintf(out, ", over %d links", c->links);
     fprintf(out, "\n");
 }
 
@@ -204,8 +235,8 @@ void network_remarks_print(const struct plan *p, FILE *out)
     int failed = 0;
     for (int i = 0; i < p->nrun; i++) {
         const struct topology_spec *t = &p->run[i].machine.topology;
-        const int runs = runs_as(p, i);
-        if (runs > 0) print_rule(p, i, runs, out);
+        const struct rule_remark x = remark_rule(&p->run[i].machine.network, runs_as(p, i));
+        if (x.runs > 0) print_rule(&x, p->nrun, out);
         /* Counted by runs: a sweep may have machines with and without failures. */
         failed += t->nfailed_link + t->nfailed_router > 0;
     }
@@ -228,16 +259,7 @@ void network_collectives_json(const struct plan *p, struct json *j)
         struct collective_remark c;
         /* Topologies may be large: the memory of one run at a time. */
         struct arena *a = arena_create();
-        if (remark_collective(&p->run[i], &left, a, &c)) {
-            json_object(j);
-            json_key_int(j, "bytes", c.shape.count * c.shape.element);
-            json_key_text(j, "collective", collective_name(c.shape.kind));
-            json_key_int(j, "links", c.links);
-            json_key_text(j, "machine", c.run->machine.name);
-            json_key_int(j, "ranks", c.run->nrank);
-            json_key_real(j, "seconds", c.seconds);
-            json_end(j);
-        }
+        if (remark_collective(&p->run[i], &left, a, &c)) columns_json(&collective_columns, &c, j);
         arena_destroy(a);
     }
     json_end(j);
@@ -249,21 +271,9 @@ void network_routing_json(const struct plan *p, struct json *j)
     json_key(j, "routing");
     json_array(j);
     for (int i = 0; i < p->nrun; i++) {
-        const struct run_spec *r = &p->run[i];
-        const int runs = runs_as(p, i);
-        const char *decides, *leaves_out;
+        const struct rule_remark x = remark_rule(&p->run[i].machine.network, runs_as(p, i));
         /* An earlier run stands for this one. */
-        if (runs == 0) continue;
-        level_words(r, &decides, &leaves_out);
-        /* Keys in the order of the alphabet. */
-        json_object(j);
-        json_key_text(j, "at_the_level", decides);
-        json_key_text(j, "left_out", leaves_out);
-        json_key_text(j, "level", network_level_name(r->machine.network.level));
-        json_key_text(j, "rule", routing_rule_name(r->machine.network.routing));
-        json_key_int(j, "runs", runs);
-        json_key_text(j, "what", routing_rule_doc(r->machine.network.routing));
-        json_end(j);
+        if (x.runs > 0) columns_json(&rule_columns, &x, j);
     }
     json_end(j);
 }

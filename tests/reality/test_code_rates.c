@@ -43,7 +43,7 @@ static bool time_of(void *context, int i, const double *price, double *seconds, 
 static void measure(struct code_rates *r, double noise)
 {
     struct err e;
-    *r = (struct code_rates){.clock = 1e9, .n = LOOPS};
+    *r = (struct code_rates){.n = LOOPS};
     for (int i = 0; i < LOOPS; i++) {
         assert_true(time_of(NULL, i, truth, &r->sample[i].seconds, &e));
         r->sample[i].seconds *= 1 + (i % 2 ? noise : -noise);
