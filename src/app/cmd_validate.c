@@ -33,7 +33,7 @@ static const char doc[] =
 
 /* One published figure: value, range, simulated value, error, evidence, whether it was used in
  * calibration, and the verdict with its reason. Numbers are in the file's own unit. */
-static void print_row(const struct published *p, const struct outcome *o)
+static void print_row(const struct published *p, const struct validated *o)
 {
     char published[48];
     if (p->low < p->high)
@@ -52,7 +52,7 @@ static void print_row(const struct published *p, const struct outcome *o)
 
 /* Where ranks meet on the wires, what every level of the network makes of it: the difference
  * between levels is the cost of ignoring contention. */
-static void print_levels(const struct published *p, const struct outcome *o)
+static void print_levels(const struct published *p, const struct validated *o)
 {
     if (!o->contended) return;
     printf("%6s at level", "");
@@ -69,7 +69,7 @@ static void print_levels(const struct published *p, const struct outcome *o)
 
 /* What both models of the node make of computing: the difference is that of caches and of the
  * memory that processors share. */
-static void print_models(const struct published *p, const struct outcome *o)
+static void print_models(const struct published *p, const struct validated *o)
 {
     if (!o->computed) return;
     printf("%6s by model rates %.5g (%+.1f %%), roofline %.5g (%+.1f %%)\n", "",
@@ -81,7 +81,7 @@ static void print_models(const struct published *p, const struct outcome *o)
 /* A published figure and what became of it: one row of the table. */
 struct point {
     const struct published *published;
-    const struct outcome *outcome;
+    const struct validated *outcome;
 };
 
 static const struct point *point(const void *row) { return row; }
@@ -155,7 +155,7 @@ static bool is_measured(const void *row) { return point(row)->outcome->measured;
 #define PUBLISHED(member)                                                                          \
     .part = PART(struct point, published), .offset = offsetof(struct published, member)
 #define OUTCOME(member)                                                                            \
-    .part = PART(struct point, outcome), .offset = offsetof(struct outcome, member)
+    .part = PART(struct point, outcome), .offset = offsetof(struct validated, member)
 
 /* The columns for the database (suite, subject, ...) and for JSON, where names are shorter.
  * Ranges are in JSON only. */
@@ -196,7 +196,8 @@ static const struct column point_column[] = {
 static const struct column_table point_columns = COLUMNS(point_column);
 
 /* One row of table check_point; a row of the same place is replaced. */
-static bool keep(struct store *s, const struct published *p, const struct outcome *o, struct err *e)
+static bool keep(struct store *s, const struct published *p, const struct validated *o,
+                 struct err *e)
 {
     static const char *const name[] = {"suite"};
     const struct store_value value[] = {store_text("machines")};
@@ -208,7 +209,7 @@ static bool keep(struct store *s, const struct published *p, const struct outcom
 struct table {
     int n;
     const struct published **row; /* (n) borrowed */
-    struct outcome *outcome;
+    struct validated *outcome;
 };
 
 static bool has_points(const void *row) { return ((const struct validation_group *)row)->n > 0; }
@@ -314,10 +315,10 @@ static bool go_through(const struct common *c, const struct published *p, int n,
 {
     const char *name = c->arg[0];
     t->row = TAKE(a, n + 1, const struct published *);
-    t->outcome = TAKE(a, n + 1, struct outcome);
+    t->outcome = TAKE(a, n + 1, struct validated);
     for (int i = 0; i < n; i++) {
         /* Rows of other machines leave no gap in the table. */
-        struct outcome *o = &t->outcome[t->n];
+        struct validated *o = &t->outcome[t->n];
         /* The name was checked before, so a row is skipped only because it belongs to another
          * machine. */
         if (strcmp(name, "all") != 0 && strcmp(name, p[i].machine) != 0) continue;

@@ -30,7 +30,7 @@ static double tolerance_of(const struct published *p)
 /* Whether the error is the one that the row's cause explains: a cause names the error that it
  * stands for, and any other error is a new one. A cause without a number explains nothing that
  * was measured. */
-static bool cause_fits(const struct published *p, struct outcome *o)
+static bool cause_fits(const struct published *p, struct validated *o)
 {
     char error[32];
     if (isfinite(p->missed) && fabs((1 + o->error) / (1 + p->missed) - 1) <= o->tolerance)
@@ -43,7 +43,7 @@ static bool cause_fits(const struct published *p, struct outcome *o)
 
 /* The order counts: what was not measured, a cause that does not fit, rows that cannot be
  * tested, then the limit or the published range. */
-void validation_judge(const struct published *p, struct outcome *o)
+void validation_judge(const struct published *p, struct validated *o)
 {
     o->tolerance = tolerance_of(p);
     o->error = (o->value - p->value) / p->value;
@@ -74,7 +74,7 @@ void validation_levels_json(const double level[LEVELS], double scale, struct jso
 
 /* Every level, for quantities in which ranks share links. */
 static void measure_levels(const struct published *p, const struct machine_spec *m,
-                           struct outcome *o)
+                           struct validated *o)
 {
     o->contended = true;
     for (int i = 0; i < LEVELS; i++) {
@@ -90,11 +90,11 @@ static void measure_levels(const struct published *p, const struct machine_spec 
 
 /* By rates and by roofline: a machine whose file states no memory has one answer. */
 static void measure_models(const struct published *p, const struct machine_spec *m,
-                           struct outcome *o)
+                           struct validated *o)
 {
     if (!(m->node.level[NODE_MEMORY].bandwidth > 0)) return;
     o->computed = true;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < NODE_MODELS; i++) {
         struct machine_spec by = *m;
         struct err why;
         err_clear(&why);
@@ -106,13 +106,13 @@ static void measure_models(const struct published *p, const struct machine_spec 
 
 /* Measure and judge one row. A machine that lacks the quantity is an outcome; a machine that
  * cannot be read is an error. */
-bool validation_measure(const struct published *p, struct outcome *o, struct arena *a,
+bool validation_measure(const struct published *p, struct validated *o, struct arena *a,
                         struct err *e)
 {
     struct machine_spec m;
     /* Rows may change the machine: another library, another number of nodes. */
     struct plan_options options = {.nset = p->nset, .set = p->set};
-    *o = (struct outcome){.value = NAN};
+    *o = (struct validated){.value = NAN};
     if (!plan_machine(&m, p->machine, &options, a, NULL, NULL, e)) return false;
     struct err why;
     err_clear(&why);
@@ -136,7 +136,7 @@ static int ascending(const void *x, const void *y)
 
 /* The points of one use; `size` is scratch of n. Estimates (class E) are in no group: they would
  * judge themselves. */
-static struct validation_group group(const struct published *const *p, const struct outcome *o,
+static struct validation_group group(const struct published *const *p, const struct validated *o,
                                      int n, enum published_use use, double *size)
 {
     struct validation_group g = {.worst_id = ""};
@@ -161,7 +161,7 @@ static struct validation_group group(const struct published *const *p, const str
 
 /* Counts over all rows, then the groups. */
 struct validation_summary validation_summarize(const struct published *const *p,
-                                               const struct outcome *o, int n)
+                                               const struct validated *o, int n)
 {
     struct validation_summary s = {.shown = n};
     struct arena *a = arena_create();

@@ -20,7 +20,7 @@ const char *validation_level_name(int level);
 void validation_levels_json(const double level[LEVELS], double scale, struct json *j);
 
 /* What a point came to. */
-struct outcome {
+struct validated {
     bool measured;
     double value;            /* SI; NAN: not measured */
     /* why the machine has no such quantity, or why the row's cause does not explain the error */
@@ -30,7 +30,7 @@ struct outcome {
     bool contended;          /* several ranks share the wires: */
     double level[LEVELS]; /* then the value at each level of enum network_level, SI, NAN: none */
     bool computed;        /* the node's model matters: */
-    double model[2];      /* then the value with each of enum node_model, SI, NAN: none */
+    double model[NODE_MODELS]; /* then the value with each of enum node_model, SI, NAN: none */
 };
 
 /* validation_measure: the figure `p` asked of its simulated machine, and judged.
@@ -43,12 +43,12 @@ struct outcome {
  * `not-testable`.
  *
  * Returns false with the error of plan_machine when the machine cannot be read or set up. */
-bool validation_measure(const struct published *p, struct outcome *o, struct arena *a,
+bool validation_measure(const struct published *p, struct validated *o, struct arena *a,
                         struct err *e);
 
 /* validation_judge: error, tolerance and verdict of an outcome whose value was measured, or was
  * not. */
-void validation_judge(const struct published *p, struct outcome *o);
+void validation_judge(const struct published *p, struct validated *o);
 
 /* One group of testable points. */
 struct validation_group {
@@ -68,6 +68,6 @@ struct validation_summary {
 /* validation_summarize: of `n` points (rows and outcomes side by side). Memory of its own, given
  * back. */
 struct validation_summary validation_summarize(const struct published *const *p,
-                                               const struct outcome *o, int n);
+                                               const struct validated *o, int n);
 
 #endif

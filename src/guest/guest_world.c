@@ -209,7 +209,7 @@ static struct machine_spec one_processor(const struct machine_spec *m)
     one.noise.compute_cv = 0;
     one.noise.background_load = 0;
     /* Serial codes may have a rate of their own. */
-    if (one.node.serial_rate > 0) one.node.flop_rate = one.node.serial_rate;
+    one.node = node_spec_serial(&one.node);
     return one;
 }
 

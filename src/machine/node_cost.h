@@ -60,10 +60,13 @@ static inline double node_cost_stated_ps(const struct node_cost *c, double flops
 /* node_cost_code_ps: time of a piece of compiled code [ps], not rounded: `instructions` that
  * together do `w`, where w->bytes counts loads and stores. A processor loads, computes and stores
  * side by side, and a flop rate is that of code with its loads and index arithmetic; so the longest
- * of three counts: arithmetic    flop, div, sqrt, trig at their costs
+ * of three counts:
+ *
+ *   arithmetic    flop, div, sqrt, trig at their costs
  *   instructions  each at c->instruction
  *   memory        half the bytes at the cost of a copied byte, as a copy loads and stores each;
  *                 roofline: all bytes at that of a byte moved
+ *
  * Calls cost what their instructions do. */
 static inline double node_cost_code_ps(const struct node_cost *c, const struct work *w,
                                        uint64_t instructions)

@@ -24,7 +24,10 @@ enum { TAG_VERDICT = 400 };
 enum { KEPT_BYTES = 64 << 20 };
 
 /* Whether this process has the whole result: only one of those that share a run does. */
-static bool chief(const struct program_run *r) { return !r->order.hosts || r->order.hosts->rank == 0; }
+static bool chief(const struct program_run *r)
+{
+    return !r->order.hosts || r->order.hosts->rank == 0;
+}
 
 /* The ranks once, with the settings that are in force now. */
 static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
@@ -118,8 +121,7 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
 {
     if (out->status != RUN_OK && out->status != RUN_INVALID) return;
     /* Serial codes may have a rate of their own. */
-    struct node_spec node = r->spec.machine.node;
-    if (node.serial_rate > 0) node.flop_rate = node.serial_rate;
+    const struct node_spec node = node_spec_serial(&r->spec.machine.node);
     /* One processor has the data of all ranks, and its caches and memory for itself. */
     const struct node_use use = node_use_alone(size_count(out->working_set, out->nrank));
     const struct node_cost cost = node_use_cost(&node, &use);

@@ -7,8 +7,9 @@
 
 /* How counted work becomes time (docs/nodes.md). */
 enum node_model {
-    NODE_RATES,   /* each class of operation at its price, one after the other */
-    NODE_ROOFLINE /* the longer one of operations and bytes moved */
+    NODE_RATES,    /* each class of operation at its price, one after the other */
+    NODE_ROOFLINE, /* the longer one of operations and bytes moved */
+    NODE_MODELS
 };
 
 /* Where data can lie, the nearest first. */
@@ -46,6 +47,10 @@ struct node_spec {
     enum node_model model;
     struct memory_level level[NODE_LEVELS]; /* act with NODE_ROOFLINE alone */
 };
+
+/* node_spec_serial: the node as serial codes find it, the baselines of speedups: at serial_rate
+ * where that is stated. */
+struct node_spec node_spec_serial(const struct node_spec *s);
 
 /* node_level_name: "L1", "L2", "L3", "memory". */
 const char *node_level_name(enum node_level level);

@@ -126,14 +126,13 @@ static bool price_row(void *context, int ncolumn, const char *const *name,
 static bool check_prices(struct store *s, int64_t run, const struct run_spec *spec,
                          struct audit_report *r, struct err *e)
 {
-    struct node_spec node = spec->machine.node;
+    const struct node_spec node = node_spec_serial(&spec->machine.node);
     char id[24];
     const char *const param[] = {id};
     /* its time is that of blocks of code, which are not stored */
     if (spec->kernel.own) return true;
     /* and here it depends on the ranks' working sets, which are not stored either */
     if (node.model == NODE_ROOFLINE) return true;
-    if (node.serial_rate > 0) node.flop_rate = node.serial_rate; /* as run/run.c */
     struct pricing p = {r, run, node_cost_make(&node)};
     snprintf(id, sizeof id, "%lld", (long long)run);
     return store_query(s,

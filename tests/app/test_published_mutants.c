@@ -24,7 +24,7 @@ struct table {
     struct scratch folder;
     struct text text;
     struct published *row;
-    struct outcome *outcome;
+    struct validated *outcome;
     int n;
 };
 
@@ -38,7 +38,7 @@ static int set_up(void **state)
     assert_true(text_read_file(&t->text, MIMDSIM_SRCDIR "/machines/published.csv", &e));
     assert_true(
         published_read(MIMDSIM_SRCDIR "/machines/published.csv", t->arena, &t->row, &t->n, &e));
-    t->outcome = TAKE(t->arena, t->n, struct outcome);
+    t->outcome = TAKE(t->arena, t->n, struct validated);
     for (int i = 0; i < t->n; i++)
         if (!validation_measure(&t->row[i], &t->outcome[i], t->arena, &e)) fail_msg("%s", e.text);
     *state = t;
@@ -109,7 +109,7 @@ static void judge(struct table *t, int i, char *text, bool must, const char *wha
         assert_true(e.line > 0);
         sum->made++, sum->refused++;
     } else {
-        struct outcome o = t->outcome[i];
+        struct validated o = t->outcome[i];
         const struct published *was = &t->row[i];
         validation_judge(&row[i], &o);
         /* Inside of a published range every figure is right: the range is the tolerance. */

@@ -182,7 +182,7 @@ static void what_does_not_fit_is_told_with_the_job(void **state)
         "placement list: ranks 0 and 2 on processor 4",
         "job 'b': placement list names 2 processors for 3 ranks",
         "job 'b': 6 ranks, but 5 of the 8 processors of machine test are free",
-        "placement gray needs a hypercube"};
+        "placement gray needs a hypercube, not a mesh"};
     for (int k = 0; k < 6; k++) {
         struct case_of_jobs c = on(TOPOLOGY_MESH, 1, dims, 1, 1);
         add(&c, 3, PLACEMENT_LIST, low, 3);
