@@ -212,7 +212,8 @@ int job_end(struct job *j, int status)
     /* Those that wait for the first process, or for one that has gone, would wait for ever. */
     if (j->h.rank == 0 && (j->gone > 0 || (j->agreed && !j->started))) {
         fflush(stdout);
-        /* Launchers lose what was said just before: they get the time to read it. */
+        /* Launchers lose what was said just before, and MPI has no call that waits until they have
+         * read it. Jobs that end well do not come here. */
         nanosleep(&a_moment, NULL);
         j->h.call->abort(status);
     }

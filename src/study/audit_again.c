@@ -9,13 +9,16 @@
 #include "run/run.h"
 #include "study/audit_rules.h"
 
-/* Columns that depend on the host, the clock or the order of runs, and the name that somebody gave
- * a run: they may differ and are not compared. machine_hash is checked with the configuration
- * (audit_config.c). */
-static const char *const host_column[] = {
-    "id",           "run_id",          "build_id",         "created_utc", "host_s",
-    "host_total_s", "host_peak_bytes", "stack_peak_bytes", "scenario",    "machine_hash",
-    "label"};
+/* Columns that a run made again need not have: they are not compared. */
+static const char *const other_column[] = {
+    /* the order of runs, the program and the moment */
+    "id", "run_id", "build_id", "created_utc",
+    /* this computer */
+    "host_s", "host_total_s", "host_peak_bytes", "stack_peak_bytes",
+    /* what people call it, which is no part of the configuration that it is made from */
+    "scenario", "label",
+    /* checked with the configuration (audit_config.c) */
+    "machine_hash"};
 
 /* The tables that hold rows of a run, with the column of its id and the order that makes two
  * reads comparable. */
@@ -144,10 +147,10 @@ struct lines {
 };
 
 /* Names of columns, not their places: a newer schema may have more. */
-static bool is_host_column(const char *name)
+static bool is_other_column(const char *name)
 {
-    for (size_t i = 0; i < sizeof host_column / sizeof *host_column; i++)
-        if (strcmp(name, host_column[i]) == 0) return true;
+    for (size_t i = 0; i < sizeof other_column / sizeof *other_column; i++)
+        if (strcmp(name, other_column[i]) == 0) return true;
     return false;
 }
 
@@ -177,7 +180,7 @@ static bool take_names(void *context, int ncolumn, const char *const *name,
     (void)v;
     struct lines *l = context;
     for (int i = 0; i < ncolumn; i++)
-        if (!is_host_column(name[i]))
+        if (!is_other_column(name[i]))
             text_add(&l->names, "%s%s", l->names.length ? ", " : "", name[i]);
     return true;
 }
