@@ -130,11 +130,8 @@ static bool find_against(struct answer *t, struct err *e)
     }
     if (a->against == NULL || t->against >= 0) return true;
     /* Misspelt, or left out by a condition or --set: the nearest of those that there are. */
-    const char *near = text_nearest(a->against, name, t->nof);
-    return err_set_at(e, ERR_DATA, a->file, a->line,
-                      "answer: against: no run has '%.80s' for %s%s%s%s", a->against, a->of_word,
-                      near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-                      near != NULL ? "'?" : "");
+    return err_set_at(e, ERR_DATA, a->file, a->line, "answer: against: no run has '%.80s' for %s%s",
+                      a->against, a->of_word, text_hint(a->against, name, t->nof, "").s);
 }
 
 /* How many times worse x is than `than`; 1: the same. */
@@ -480,7 +477,8 @@ bool answer_draw(const struct answer *t, struct store *s, const char *dir, struc
                                                    : t->asked->of_word;
         /* Names of columns are made of letters and digits: no text of a file gets into the query,
          * and what stands in the table is bound. */
-        struct plot_request r = {.by = *curve ? "curve" : "", .title = t->plan->question, .as = t->plan->name};
+        struct plot_request r = {
+            .by = *curve ? "curve" : "", .title = t->plan->question, .as = t->plan->name};
         text_add(&sql, "SELECT run_id, x AS \"");
         r.x_name = add_name(last_words(axis), "x",
                             numbers ? (along ? t->of : t->over)->unit : UNIT_NONE, &sql);

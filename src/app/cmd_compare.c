@@ -205,12 +205,9 @@ static bool called_side(struct request *r, const char *word, struct err *e)
     int nmachine = 0;
     if (plan_list("machines", r->arena, &stem, &title, &nmachine, &ignored))
         for (int i = 0; i < nmachine && n.n < 256; i++) n.name[n.n++] = stem[i];
-    const char *near = text_nearest(word, n.name, n.n);
     return err_set(e, ERR_NO_INPUT,
-                   "'%.80s' is no machine, scenario or database, and no run of %s is called "
-                   "so%s%s%s",
-                   word, r->common->database, near != NULL ? "; did you mean '" : "",
-                   near != NULL ? near : "", near != NULL ? "'?" : "");
+                   "'%.80s' is no machine, scenario or database, and no run of %s is called so%s",
+                   word, r->common->database, text_hint(word, n.name, n.n, "").s);
 }
 
 /* Digits only: the number of a run. */

@@ -33,10 +33,9 @@ static bool level_of(const char *word, enum network_level *level, struct err *e)
         if (strcmp(word, name[l]) == 0) *level = (enum network_level)l;
         if (strcmp(word, name[l]) == 0) return true;
     }
-    const char *near = text_nearest(word, name, LEVELS);
-    return near ? err_set(e, ERR_USAGE, "there is no level '%s'; did you mean '%s'?", word, near)
-                : err_set(e, ERR_USAGE,
-                          "there is no level '%s'; known: loggp, link, packet, flit, auto", word);
+    static const char all[] = "; known: loggp, link, packet, flit, auto";
+    return err_set(e, ERR_USAGE, "there is no level '%s'%s", word,
+                   text_hint(word, name, LEVELS, all).s);
 }
 
 /* Several files are told apart by their names. */

@@ -179,11 +179,10 @@ bool load_options_levels(const char *text, struct load_options *o, struct arena 
     for (int i = 0; i < o->nlevel; i++) {
         int l = 0;
         while (l < LEVELS && strcmp(word[i], name[l]) != 0) l++;
-        const char *near = text_nearest(word[i], name, LEVELS);
+        static const char all[] = "; known: loggp, link, packet, flit, auto";
         if (l == LEVELS)
-            return err_set(e, ERR_USAGE, "--level: there is no level '%.40s'%s%s%s", word[i],
-                           near ? "; did you mean '" : "; known: loggp, link, packet, flit, auto",
-                           near ? near : "", near ? "'?" : "");
+            return err_set(e, ERR_USAGE, "--level: there is no level '%.40s'%s", word[i],
+                           text_hint(word[i], name, LEVELS, all).s);
         o->level[i] = (enum network_level)l;
     }
     return true;

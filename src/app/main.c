@@ -54,11 +54,10 @@ static int unknown_verb(int argc, char **argv)
     const char *name[MOST_VERBS] = {"--help", "--version"};
     int n = 2;
     for (const struct verb *v = verb_list; v->name; v++) name[n++] = v->name;
-    const char *near = text_nearest(word, name, n);
     struct err e;
     err_clear(&e);
-    err_set(&e, ERR_USAGE, "'%s' is not a verb%s%s%s; 'mimdsim --help' lists them", word,
-            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    err_set(&e, ERR_USAGE, "'%s' is not a verb%s; 'mimdsim --help' lists them", word,
+            text_hint(word, name, n, "").s);
     return common_fail(&c, &e);
 }
 

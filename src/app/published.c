@@ -142,9 +142,7 @@ static bool read_unit(struct published *p, struct err *e)
                err_set(e, ERR_DATA, "%s: '%s' is no unit of %s", p->id, p->unit,
                        probe_name(p->quantity));
     }
-    const char *near = text_nearest(p->unit, name, n);
-    return err_set(e, ERR_DATA, "unknown unit '%s'%s%s%s", p->unit, near ? "; did you mean '" : "",
-                   near ? near : "", near ? "'?" : "");
+    return err_set(e, ERR_DATA, "unknown unit '%s'%s", p->unit, text_hint(p->unit, name, n, "").s);
 }
 
 /* The nearest name of a quantity where there is one. */
@@ -154,9 +152,8 @@ static bool read_quantity(struct published *p, const char *s, struct err *e)
     for (int i = 0; i < PROBE_QUANTITIES; i++) name[i] = probe_name((enum probe_quantity)i);
     p->quantity = probe_find(s);
     if (p->quantity != PROBE_QUANTITIES) return true;
-    const char *near = text_nearest(s, name, PROBE_QUANTITIES);
-    return err_set(e, ERR_DATA, "no quantity is called '%s'%s%s%s", s,
-                   near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return err_set(e, ERR_DATA, "no quantity is called '%s'%s", s,
+                   text_hint(s, name, PROBE_QUANTITIES, "").s);
 }
 
 /* What every row has: a name, a known class of evidence, a source, a value above 0 that lies in

@@ -81,6 +81,15 @@ const char *text_nearest(const char *word, const char *const *names, int n)
     return nearest ? nearest : text_abbreviated(word, length, names, n);
 }
 
+struct text_hint text_hint(const char *word, const char *const *names, int n, const char *otherwise)
+{
+    struct text_hint h;
+    const char *near = text_nearest(word, names, n);
+    if (near != NULL) snprintf(h.s, sizeof h.s, "; did you mean '%.160s'?", near);
+    else snprintf(h.s, sizeof h.s, "%s", otherwise);
+    return h;
+}
+
 /* Doubling: n characters cost O(n) copies in total. One byte more for the end. */
 void text_reserve(struct text *t, size_t n)
 {

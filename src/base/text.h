@@ -15,6 +15,14 @@
  * or NULL. */
 const char *text_nearest(const char *word, const char *const *names, int n);
 
+/* text_hint: the end of a message about an unknown word: "; did you mean 'NAME'?" of the nearest
+ * name, or `otherwise` where none is near. Use its member: text_hint(word, names, n, "").s. */
+struct text_hint {
+    char s[200];
+};
+struct text_hint text_hint(const char *word, const char *const *names, int n,
+                           const char *otherwise);
+
 /* A growing text on the heap; start from {0}, end with text_free. */
 struct text {
     char *s;         /* NUL-terminated, owned; NULL when nothing was added yet */

@@ -93,9 +93,7 @@ static int stepper_find(const char *name, struct err *e)
     for (int i = 0; i < count; i++)
         if (strcmp(names[i], name) == 0) return i;
     /* As everywhere: the nearest name. */
-    const char *near = text_nearest(name, names, count);
-    err_set(e, ERR_USAGE, "no integrator '%s'%s%s%s", name, near ? "; did you mean '" : "",
-            near ? near : "", near ? "'?" : "");
+    err_set(e, ERR_USAGE, "no integrator '%s'%s", name, text_hint(name, names, count, "").s);
     return -1;
 }
 

@@ -283,10 +283,10 @@ static bool no_such_lab(const char *name, struct arena *a, struct err *e)
     const int n = lab_names(a, &names);
     /* A mistyped "check" is looked for among the words that stand in a lab's place, too. */
     static const char *const word[] = {"check", "draw", "report", "grade"};
-    const char *near = text_nearest(name, names, n);
-    if (near == NULL) near = text_nearest(name, word, 4);
-    return err_set(e, ERR_NO_INPUT, "'%.60s' is not a lab%s%s%s; `mimdsim lab` lists them", name,
-                   near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    struct text_hint hint = text_hint(name, names, n, "");
+    if (hint.s[0] == '\0') hint = text_hint(name, word, 4, "");
+    return err_set(e, ERR_NO_INPUT, "'%.60s' is not a lab%s; `mimdsim lab` lists them", name,
+                   hint.s);
 }
 
 bool lab_read(struct lab *l, const char *name, const char *student, bool mpi, struct arena *a,

@@ -223,11 +223,9 @@ static bool kind_read(struct reader *r, const char *joint, const char *type, enu
         if (strcmp(type, kind_name[k]) == 0) return true;
     }
     /* Types of other formats, such as "hinge", have no near name: then all are listed. */
-    const char *nearest = text_nearest(type, kind_name, URDF_KINDS);
-    REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s%s%s", joint, type,
-           nearest ? "; did you mean '" : "",
-           nearest ? nearest : "; known: fixed, revolute, continuous, prismatic, floating, planar",
-           nearest ? "'?" : "");
+    static const char all[] = "; known: fixed, revolute, continuous, prismatic, floating, planar";
+    REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s", joint, type,
+           text_hint(type, kind_name, URDF_KINDS, all).s);
     return false;
 }
 

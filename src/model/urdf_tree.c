@@ -67,11 +67,9 @@ static bool link_find(struct maker *m, const struct named *named, const struct u
     /* Only for the message: a file is refused once. */
     const char **names = TAKE(m->a, robot->nlink, const char *);
     for (int i = 0; i < robot->nlink; i++) names[i] = named[i].name;
-    const char *nearest = text_nearest(end->name, names, robot->nlink);
     return err_set_at(m->e, ERR_DATA, robot->path, end->line,
-                      "joint '%.100s': there is no link '%.100s'%s%.100s%s", joint->name, end->name,
-                      nearest ? "; did you mean '" : "", nearest ? nearest : "",
-                      nearest ? "'?" : "");
+                      "joint '%.100s': there is no link '%.100s'%s", joint->name, end->name,
+                      text_hint(end->name, names, robot->nlink, "").s);
 }
 
 /* Names become indices, and each link learns which joint carries it. */

@@ -61,9 +61,8 @@ static bool known(const struct checker *c, const struct node *map, const char *c
         while (name[k] && strcmp(name[k], x->key) != 0) k++;
         if (name[k]) continue;
         /* Misspelled answers would otherwise be answers that nobody checks. */
-        const char *near = text_nearest(x->key, name, count(name));
-        return err_set_at(c->e, ERR_DATA, c->path, x->line, "unknown key '%.80s'%s%s%s", x->key,
-                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        return err_set_at(c->e, ERR_DATA, c->path, x->line, "unknown key '%.80s'%s", x->key,
+                          text_hint(x->key, name, count(name), "").s);
     }
     return true;
 }

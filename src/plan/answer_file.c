@@ -75,12 +75,9 @@ static bool read_entry(struct reading *r, const struct node *n)
         return n->text != NULL || refuse(r, n, "expected one value of 'of'");
     }
     /* A key that is none of these: the nearest, or all that there are. */
-    static const char all[] = "expected of, over, least, greatest, called, against, within";
-    const char *near = text_nearest(n->key, known, KNOWN);
-    return err_set_at(r->err, ERR_DATA, r->scenario->path, n->line,
-                      "answer: unknown key '%.80s'; %s%s%s", n->key,
-                      near != NULL ? "did you mean '" : all, near != NULL ? near : "",
-                      near != NULL ? "'?" : "");
+    static const char all[] = "; expected of, over, least, greatest, called, against, within";
+    return err_set_at(r->err, ERR_DATA, r->scenario->path, n->line, "answer: unknown key '%.80s'%s",
+                      n->key, text_hint(n->key, known, KNOWN, all).s);
 }
 
 bool answer_file_read(struct scenario *s, const struct node *n, struct arena *a, struct err *e)

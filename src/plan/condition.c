@@ -60,12 +60,9 @@ static bool unknown(const char *name, char *why, int size)
             list[n] = full[n];
         }
     /* none near: where all of them stand */
-    const char *near = text_nearest(name, list, n);
-    snprintf(why, (size_t)size, "unknown name '%.80s'%s%s%s", name,
-             near != NULL ? "; did you mean '"
-                          : "; names are n, P, processors and the keys of "
-                            "scenarios (`mimdsim scenarios --keys`)",
-             near != NULL ? near : "", near != NULL ? "'?" : "");
+    static const char all[] =
+        "; names are n, P, processors and the keys of scenarios (`mimdsim keys`)";
+    snprintf(why, (size_t)size, "unknown name '%.80s'%s", name, text_hint(name, list, n, all).s);
     return false;
 }
 

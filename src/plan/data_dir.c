@@ -241,7 +241,6 @@ bool data_dir_has_figure(const char *name, const char *file, int line, struct ar
     const char **names = data_dir_names("plots", a, &n);
     for (int i = 0; i < n; i++)
         if (strcmp(names[i], name) == 0) return true;
-    const char *near = text_nearest(name, names, n);
-    return err_set_at(e, ERR_DATA, file, line, "no figure '%.80s'%s%s%s; `mimdsim plot` lists them",
-                      name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return err_set_at(e, ERR_DATA, file, line, "no figure '%.80s'%s; `mimdsim plot` lists them",
+                      name, text_hint(name, names, n, "").s);
 }

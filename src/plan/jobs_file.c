@@ -158,12 +158,10 @@ static bool read_mapping(const struct reading *r, const struct node *n)
         else if (strcmp(c->key, "spread") == 0 && c->text != NULL)
             ok = add(r, "machine.placement.spread", c->text, c->line);
         else {
-            const char *near = text_nearest(c->key, known, 5);
+            static const char all[] = "; expected kind, seed, spread, list or file";
             ok = err_set_at(r->err, ERR_DATA, r->scenario->path, c->line,
-                            "job '%.31s': placement: unknown key '%.40s'; %s%s%s", r->job->name,
-                            c->key,
-                            near != NULL ? "did you mean '" : "expected kind, seed, spread,",
-                            near != NULL ? near : " list or file", near != NULL ? "'?" : "");
+                            "job '%.31s': placement: unknown key '%.40s'%s", r->job->name, c->key,
+                            text_hint(c->key, known, 5, all).s);
         }
         if (!ok) return false;
     }
@@ -310,10 +308,9 @@ static bool take_word(struct scenario_jobs *j, const struct scenario *s, const s
     const char *text = n->text != NULL ? n->text : "";
     for (int i = 0; i < 3; i++)
         if (strcmp(text, word[i]) == 0) return j->combine |= 1U << i, true;
-    const char *near = text_nearest(text, word, 3);
-    return err_set_at(e, ERR_DATA, s->path, n->line, "combinations: '%.80s': %s%s%s", text,
-                      near != NULL ? "did you mean '" : "expected all, alone, pairs or a list of",
-                      near != NULL ? near : " them", near != NULL ? "'?" : "");
+    return err_set_at(e, ERR_DATA, s->path, n->line, "combinations: '%.80s': %s", text,
+                      text_hint(text, word, 3, "; expected all, alone, pairs or a list of them").s +
+                          2);
 }
 
 bool jobs_file_combine(struct scenario *s, const struct node *words, struct arena *a,
@@ -390,11 +387,8 @@ static struct scenario_job *job_of(const struct scenario *s, const char **key, s
     /* No such job: the nearest, and how such keys look. */
     char word[JOB_NAME];
     snprintf(word, sizeof word, "%.*s", (int)length, name);
-    /* Nearest among the jobs of this scenario. */
-    const char *near = text_nearest(word, names, n);
-    err_set_at(e, ERR_DATA, "--set", 0, "no job is called '%s'%s%s%s; keys are jobs.NAME.KEY", word,
-               near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-               near != NULL ? "'?" : "");
+    err_set_at(e, ERR_DATA, "--set", 0, "no job is called '%s'%s; keys are jobs.NAME.KEY", word,
+               text_hint(word, names, n, "").s);
     return NULL;
 }
 
@@ -433,7 +427,6 @@ bool jobs_file_set(struct scenario *s, const char *key, const char *text, struct
     if (strcmp(key, "name") == 0)
         return err_set_at(e, ERR_DATA, "--set", 0, "jobs.%s.name: a job keeps its name", job->name);
     /* A place is several settings, all of which give way. */
-    remove_keys(&job->set,
-                strcmp(key, "placement") == 0 ? places : setting_key(root->child->key));
+    remove_keys(&job->set, strcmp(key, "placement") == 0 ? places : setting_key(root->child->key));
     return read_key(&r, root->child);
 }

@@ -25,11 +25,9 @@ static bool kernels_exist(const struct setting_list *list, const struct plan_opt
         bool known = strcmp(s->key, "kernel.name") != 0;
         for (int k = 0; !known && k < o->nkernel; k++) known = strcmp(s->text, o->kernel[k]) == 0;
         if (known) continue;
-        const char *near = text_nearest(s->text, o->kernel, o->nkernel);
         return err_set_at(e, ERR_DATA, s->file, s->line,
-                          "no kernel is called '%.80s'%s%s%s; `mimdsim kernels` lists them",
-                          s->text, near ? "; did you mean '" : "", near ? near : "",
-                          near ? "'?" : "");
+                          "no kernel is called '%.80s'%s; `mimdsim kernels` lists them", s->text,
+                          text_hint(s->text, o->kernel, o->nkernel, "").s);
     }
     return true;
 }

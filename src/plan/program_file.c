@@ -306,11 +306,9 @@ static bool refuse_parameter(const struct scenario *s, const struct setting *p, 
             n++;
         }
     for (size_t i = 0; i < 4 && n < most; i++) name[n++] = own[i];
-    const char *near = text_nearest(name_of(p), name, n);
-    err_set_at(e, ERR_DATA, p->file, p->line,
-               "program %s declares no parameter '%s'%s%s%s; it has %s", s->program[0].sheet->name,
-               name_of(p), near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-               near != NULL ? "'?" : "", all.s != NULL ? all.s : "none");
+    err_set_at(e, ERR_DATA, p->file, p->line, "program %s declares no parameter '%s'%s; it has %s",
+               s->program[0].sheet->name, name_of(p), text_hint(name_of(p), name, n, "").s,
+               all.s != NULL ? all.s : "none");
     text_free(&all);
     return false;
 }

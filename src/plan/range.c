@@ -73,10 +73,8 @@ bool range_read(struct range *r, const char *key, const struct node *n, const ch
     for (const struct node *c = n->child; c != NULL; c = c->next)
         if (strcmp(c->key, "from") != 0 && strcmp(c->key, "to") != 0 &&
             strcmp(c->key, "scale") != 0) {
-            const char *near = text_nearest(c->key, known, 3);
-            return err_set_at(e, ERR_DATA, file, c->line,
-                              "%s: unknown key '%.80s'; did you mean '%s'?", key, c->key,
-                              near != NULL ? near : "scale");
+            return err_set_at(e, ERR_DATA, file, c->line, "%s: unknown key '%.80s'%s", key, c->key,
+                              text_hint(c->key, known, 3, "; expected from, to, scale").s);
         }
     if (!read_end(r, from, &r->low, file, a, e) || !read_end(r, to, &r->high, file, a, e))
         return false;

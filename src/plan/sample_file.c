@@ -106,10 +106,8 @@ static bool read_entry(struct sample *s, const struct node *n)
     if (strcmp(n->key, "of") == 0) return read_keys(s, n);
     if (strcmp(n->key, "seed") == 0)
         return read_whole(s, n, 0, 1e9, &seed) && (s->seed = seed, true);
-    const char *near = text_nearest(n->key, known, 4);
-    return err_set_at(s->err, ERR_DATA, s->file, n->line, "sample: unknown key '%.80s'; %s%s%s",
-                      n->key, near != NULL ? "did you mean '" : "expected points, method, seed, of",
-                      near != NULL ? near : "", near != NULL ? "'?" : "");
+    return err_set_at(s->err, ERR_DATA, s->file, n->line, "sample: unknown key '%.80s'%s", n->key,
+                      text_hint(n->key, known, 4, "; expected points, method, seed, of").s);
 }
 
 /* The settings of all points. A list of m values is drawn from by cutting [0, 1) into m parts. */

@@ -92,11 +92,10 @@ static bool read_entry(struct reading *r, const struct node *n)
     if (strcmp(n->key, "within") == 0) return (r->search->within = read_formula(r, n)) != NULL;
     if (strcmp(n->key, "over") == 0) return read_over(r, n);
     if (strcmp(n->key, "runs") == 0) return read_runs(r, n);
-    const char *near = text_nearest(n->key, known, 5);
-    return err_set_at(
-        r->err, ERR_DATA, r->scenario->path, n->line, "optimise: unknown key '%.80s'; %s%s%s",
-        n->key, near != NULL ? "did you mean '" : "expected least, greatest, within, over, runs",
-        near != NULL ? near : "", near != NULL ? "'?" : "");
+    static const char all[] = "; expected least, greatest, within, over, runs";
+    return err_set_at(r->err, ERR_DATA, r->scenario->path, n->line,
+                      "optimise: unknown key '%.80s'%s", n->key,
+                      text_hint(n->key, known, 5, all).s);
 }
 
 /* A search without a goal or without anything to change is none. */

@@ -142,12 +142,10 @@ static bool unknown(const struct names *n, const char *key, struct err *e)
         if (dot != NULL && count < 2 * MOST_NAMES) all[count++] = dot + 1;
     }
     /* The last word of a key is what people remember of it. */
-    const char *near = text_nearest(key, all, count);
     return err_set(e, ERR_USAGE,
-                   "'%.80s' is neither a column of a run nor a setting%s%s%s; `mimdsim plot DB "
+                   "'%.80s' is neither a column of a run nor a setting%s; `mimdsim plot DB "
                    "--columns` lists them",
-                   key, near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-                   near != NULL ? "'?" : "");
+                   key, text_hint(key, all, count, "").s);
 }
 
 /* Where the values of `key` are: a column by its name, a setting by its key or a unique end of
@@ -424,10 +422,8 @@ int plot_sheet_find(const struct plot_sheet *sheet, const char *key, struct err 
         if (told < MOST_NAMES) name[told++] = sheet->column[i].key;
     }
     if (found >= 0) return found;
-    const char *near = text_nearest(key, name, told);
-    err_set(e, ERR_USAGE, "'%.80s' is no column of the query%s%s%s", key,
-            near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-            near != NULL ? "'?" : "");
+    err_set(e, ERR_USAGE, "'%.80s' is no column of the query%s", key,
+            text_hint(key, name, told, "").s);
     return -1;
 }
 
