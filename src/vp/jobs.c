@@ -260,6 +260,7 @@ static void run(struct jobs *j, uint64_t seed)
         fail_others(j, at);
         return;
     }
+    /* Times and links of each job alone: what they have in common is nobody's result. */
     for (int i = 0; i < j->n; i++) {
         if (!j->job[i].load) continue;
         world_collect(&j->world[i]);
@@ -293,6 +294,7 @@ bool world_run_jobs(const struct machine_spec *m, const struct world_job *job, i
         .shared_channel = m->software.shared_bandwidth > 0,
         .eager_only = true,
         .noisy = m->noise.compute_cv > 0,
+        /* Who stops, or waits for the machine's one server, does so among all jobs. */
         .whole = &j.whole,
     };
     pool.arena = j.whole.scratch;

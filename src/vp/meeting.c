@@ -171,6 +171,7 @@ void vp_meet(struct comm *c, const struct comm_meeting *m)
 int meeting_describe(const struct vp *v, char *s, int size)
 {
     const struct meeting *g = v->world->meeting;
+    /* How many have come tells whether one is late or most never will. */
     return snprintf(
         s, (size_t)size,
         "rank %d in %s waits in a collective of the network, %s of %lld B (%s:%d), that "

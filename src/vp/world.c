@@ -236,6 +236,7 @@ void world_name_stages(struct run_result *r, int nstage, const char *const *name
 
 bool world_all_eager(const struct machine_spec *m, const struct world_load *load)
 {
+    /* A synchronous send shakes hands whatever its size, and only timed programs have one. */
     return (!load->timed || load->no_synchronous) &&
            software_all_eager(&m->software, load->largest_message);
 }
@@ -244,6 +245,7 @@ bool world_make_network(struct world *w, bool links, struct err *e)
 {
     w->net = net_create(w->machine, w->topology, w->sim, w->scratch, world_deliver, w, links, e);
     if (!w->net) return false;
+    /* Both before the first message: neither may change while one is under way. */
     net_set_in_order(w->net, w->eager_only);
     net_foresee(w->net, foresee);
     return true;
