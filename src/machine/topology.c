@@ -164,11 +164,3 @@ int topology_parts(const struct topology *t, int64_t *size)
 {
     return t->type->parts ? t->type->parts(t, size) : 0;
 }
-
-/* A block grows by one dimension at a time. */
-int topology_grid_parts(const struct topology *t, int64_t *size)
-{
-    int64_t block = t->nodes_per_router;
-    for (int i = 0; i < t->spec->ndim; i++) size[i] = block *= t->spec->dims[i];
-    return t->spec->ndim;
-}

@@ -219,6 +219,14 @@ static int64_t torus_bisection(const struct topology *t)
 }
 
 /* One set of functions for both: g->wraps is all the difference. */
+/* A block grows by one dimension at a time. */
+int topology_grid_parts(const struct topology *t, int64_t *size)
+{
+    int64_t block = t->nodes_per_router;
+    for (int i = 0; i < t->spec->ndim; i++) size[i] = block *= t->spec->dims[i];
+    return t->spec->ndim;
+}
+
 const struct topology_type topology_torus = {
     .name = "torus",
     .create = torus_create,

@@ -241,14 +241,6 @@ const char *mpi_name_given(struct mpi_rank *r, enum mpi_kind kind, const void *o
     return a ? a->value : else_;
 }
 
-/* To the program: of a text that is too long the length is that of what is there. */
-int mpi_text_out(char *to, int capacity, const char *text, int *length)
-{
-    snprintf(to, (size_t)capacity, "%s", text);
-    *length = (int)strlen(to);
-    return MPI_SUCCESS;
-}
-
 void mpi_name_give(struct mpi_rank *r, enum mpi_kind kind, const void *object, const char *name)
 {
     struct mpi_attribute **at = find(r, kind, object, NULL);

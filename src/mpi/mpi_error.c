@@ -244,6 +244,14 @@ int mpi_error_class(struct mpi_rank *self, int errorcode, int *errorclass)
     return MPI_SUCCESS;
 }
 
+/* To the program: of a text that is too long the length is that of what is there. */
+int mpi_text_out(char *to, int capacity, const char *text, int *length)
+{
+    snprintf(to, (size_t)capacity, "%s", text);
+    *length = (int)strlen(to);
+    return MPI_SUCCESS;
+}
+
 int mpi_error_string(struct mpi_rank *self, int errorcode, char *string, int *resultlen)
 {
     int i = added(self, errorcode);

@@ -508,16 +508,3 @@ bool scenario_file_read(struct scenario *s, const char *name, const struct plan_
         root = program ? program_file_scenario(name, a, e) : document_read_settings(path, a, e);
     return root != NULL && scenario_file_tree(s, root, path, o, a, e);
 }
-
-int scenario_lists(struct scenario *s, struct arena *a, struct setting_list ***list)
-{
-    int n = 2 + (s->jobs != NULL ? s->jobs->n : 0);
-    for (int i = 0; i < s->naxis; i++) n += s->axis[i].npoint;
-    struct setting_list **at = *list = TAKE(a, n, struct setting_list *);
-    *at++ = &s->base;
-    for (int i = 0; i < s->naxis; i++)
-        for (int j = 0; j < s->axis[i].npoint; j++) *at++ = &s->axis[i].point[j];
-    for (int i = 0; s->jobs != NULL && i < s->jobs->n; i++) *at++ = &s->jobs->job[i].set;
-    *at = &s->set;
-    return n;
-}
