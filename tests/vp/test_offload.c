@@ -11,33 +11,19 @@
 #include "base/random.h"
 #include "vp/world.h"
 
+#include "crossbar.h"
+
 enum { BIG = 4000, LARGE = 1000, TAG = 7, US = 1000000 }; /* [B], [B], -, [ps] */
 
 static const char *const stage_name[] = {"all"};
 
-/* 1 ns a flop; o_s 2 us and 1 ns a byte, o_r 3 us and 2 ns a byte; 400 ns for an empty message, 1
- * ns for each byte behind the first; 500 ns for a hand-shake of messages above `eager` bytes. */
+/* 500 ns more for the hand-shake of messages above `eager` bytes. */
 static struct machine_spec pair(enum offload offload, int64_t eager)
 {
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR,
-                                        .ndim = 1,
-                                        .dims = {4},
-                                        .nodes_per_router = 1,
-                                        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .link_bandwidth = 1e9,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6,
-                                        .recv_overhead = 3e-6,
-                                        .send_copy = 1e-9,
-                                        .recv_copy = 2e-9,
-                                        .rendezvous_latency = 500e-9,
-                                        .eager_bytes = eager,
-                                        .offload = offload};
+    struct machine_spec m = crossbar(4);
+    m.software.rendezvous_latency = 500e-9;
+    m.software.eager_bytes = eager;
+    m.software.offload = offload;
     return m;
 }
 

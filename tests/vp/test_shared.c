@@ -13,6 +13,8 @@
 #include "base/random.h"
 #include "vp/world.h"
 
+#include "crossbar.h"
+
 enum { RANKS = 97, MOST = 8 };
 
 /* --- a job of threads --- */
@@ -97,23 +99,11 @@ static const struct hosts_calls calls = {.table = HOSTS_TABLE, .library = "threa
 
 static const char *const stage_name[] = {"first", "second"};
 
-static struct machine_spec crossbar(int nodes)
+static struct machine_spec barrier_crossbar(int nodes)
 {
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
-        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .link_bandwidth = 1e9,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6,
-                                        .recv_overhead = 3e-6,
-                                        .barrier = BARRIER_HARDWARE,
-                                        .barrier_time = 1e-6,
-                                        .eager_bytes = -1};
+    struct machine_spec m = crossbar(nodes);
+    m.software.barrier = BARRIER_HARDWARE;
+    m.software.barrier_time = 1e-6;
     return m;
 }
 
@@ -135,7 +125,7 @@ struct process {
 static void *execute(void *argument)
 {
     struct process *p = argument;
-    const struct machine_spec m = crossbar(p->nrank);
+    const struct machine_spec m = barrier_crossbar(p->nrank);
     const struct record_spec record = {.links = true};
     const struct comm_output output = {p->out.output, RANKS * 3};
     struct err e;

@@ -9,26 +9,18 @@
 #include "measure/balance.h"
 #include "vp/world.h"
 
+#include "crossbar.h"
+
 enum { US = 1000000 };
 
 static const char *const stage_name[] = {"first", "second"};
 
 /* o_s 2 us, o_r 3 us, one resource of 100 ns, 300 ns at the ends; bytes take no time. */
-static struct machine_spec crossbar(int nodes)
+static struct machine_spec free_bytes(int nodes)
 {
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR,
-                                        .ndim = 1,
-                                        .dims = {nodes},
-                                        .nodes_per_router = 1,
-                                        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){
-        .send_overhead = 2e-6, .recv_overhead = 3e-6, .eager_bytes = -1};
+    struct machine_spec m = crossbar(nodes);
+    m.network.link_bandwidth = m.node.copy_bandwidth = 0;
+    m.software.send_copy = m.software.recv_copy = 0;
     return m;
 }
 
@@ -82,7 +74,7 @@ static void meet_at_a_barrier(struct comm *c, void *context)
 static void at_a_barrier_the_last_has_none(void **state)
 {
     (void)state;
-    struct machine_spec m = crossbar(4);
+    struct machine_spec m = free_bytes(4);
     m.software.barrier = BARRIER_HARDWARE;
     for (int time = 0; time <= 8; time += 8) {
         m.software.barrier_time = time * 1e-6;
@@ -112,7 +104,7 @@ static void send_early(struct comm *c, void *context)
 static void a_message_that_waits_has_the_time_until_it_is_asked_for(void **state)
 {
     (void)state;
-    const struct machine_spec m = crossbar(2);
+    const struct machine_spec m = free_bytes(2);
     struct outcome o = go(&m, 2, send_early, NULL);
     /* sent after 2 us, there after 2.4 us, asked for after 50 us */
     assert_int_equal(slack(&o, 0, 0), 50 * US - 2400000);
@@ -141,7 +133,7 @@ static void shake_hands(struct comm *c, void *context)
 static void a_receive_that_is_posted_early_has_the_time_until_the_request_comes(void **state)
 {
     (void)state;
-    struct machine_spec m = crossbar(2);
+    struct machine_spec m = free_bytes(2);
     m.software.eager_bytes = 0;
     struct outcome o = go(&m, 2, shake_hands, NULL);
     assert_int_equal(slack(&o, 1, 0), 102400000 - 10 * US);
@@ -170,7 +162,7 @@ static void pass_a_server(struct comm *c, void *context)
 static void a_free_server_leaves_slack_to_who_passed_it(void **state)
 {
     (void)state;
-    struct machine_spec m = crossbar(3);
+    struct machine_spec m = free_bytes(3);
     m.software.kernel_server = true;
     m.software.kernel_time = 5e-6;
     struct outcome o = go(&m, 3, pass_a_server, NULL);
@@ -194,7 +186,7 @@ static void unequal(struct comm *c, void *context)
 static void computing_lasts_as_the_table_says(void **state)
 {
     (void)state;
-    const struct machine_spec m = crossbar(2);
+    const struct machine_spec m = free_bytes(2);
     /* two stages and the end of the run; what is no multiple of anything must still add up */
     const int64_t own[] = {3 * US, 7 * US, 0, 6 * US, 0, 0};
     const int64_t target[] = {4500001, 3500000, 0, 4499999, 3500000, 0};
@@ -210,7 +202,7 @@ static void computing_lasts_as_the_table_says(void **state)
 static void a_table_of_the_same_times_changes_nothing(void **state)
 {
     (void)state;
-    const struct machine_spec m = crossbar(2);
+    const struct machine_spec m = free_bytes(2);
     const int64_t own[] = {3 * US, 7 * US, 0, 6 * US, 0, 0};
     const struct balance b = {2, 3, own, own};
     struct outcome o = go(&m, 2, unequal, &b), plain = go(&m, 2, unequal, NULL);

@@ -10,29 +10,17 @@
 #include "base/random.h"
 #include "vp/world.h"
 
+#include "crossbar.h"
+
 enum { RANKS = 97 }; /* no multiple of anything: shares are of different sizes */
 
 static const char *const stage_name[] = {"first", "second"};
 
-static struct machine_spec crossbar(int nodes)
+static struct machine_spec noisy_crossbar(int nodes)
 {
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
-        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .link_bandwidth = 1e9,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6,
-                                        .recv_overhead = 3e-6,
-                                        .send_copy = 1e-9,
-                                        .recv_copy = 2e-9,
-                                        .barrier = BARRIER_HARDWARE,
-                                        .barrier_time = 1e-6,
-                                        .eager_bytes = -1};
+    struct machine_spec m = crossbar(nodes);
+    m.software.barrier = BARRIER_HARDWARE;
+    m.software.barrier_time = 1e-6;
     m.noise.compute_cv = 0.2;
     return m;
 }
@@ -48,7 +36,7 @@ enum { MOST = 3000 };
 static struct outcome go(world_program *program, int nrank, int threads, uint64_t delays)
 {
     struct outcome o = {.arena = arena_create()};
-    const struct machine_spec m = crossbar(nrank);
+    const struct machine_spec m = noisy_crossbar(nrank);
     const struct record_spec record = {.links = true};
     struct err e;
     err_clear(&e);
@@ -227,7 +215,7 @@ static void a_failure_is_a_failure(void **state)
 static void what_depends_on_order_says_so(void **state)
 {
     (void)state;
-    struct machine_spec m = crossbar(4), other;
+    struct machine_spec m = noisy_crossbar(4), other;
     const struct record_spec nothing = {0}, spans = {.spans = true}, path = {.path = true};
     struct world_load load = {.nrank = 4,
                               .program = exchanges,

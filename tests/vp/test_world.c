@@ -11,28 +11,9 @@
 #include "comm/collectives.h"
 #include "vp/world.h"
 
-static const char *const stage_name[] = {"first", "second"};
+#include "crossbar.h"
 
-static struct machine_spec crossbar(int nodes)
-{
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){
-        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
-        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .link_bandwidth = 1e9,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6,
-                                        .recv_overhead = 3e-6,
-                                        .send_copy = 1e-9,
-                                        .recv_copy = 2e-9,
-                                        .gap_per_byte = 0,
-                                        .eager_bytes = -1};
-    return m;
-}
+static const char *const stage_name[] = {"first", "second"};
 
 struct outcome {
     struct arena *arena;
