@@ -1,15 +1,12 @@
 /* test_check.c - a failed CHECK says where and in which run, and aborts; so do misuses of the
  * base. */
 #include <setjmp.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -17,36 +14,7 @@
 #include "base/check.h"
 #include "base/json.h"
 
-/* words_of: run `act` in a child; its standard error goes to `out`. Returns how it ended. */
-static int words_of(void (*act)(void), char *out, size_t size)
-{
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    pid_t child = fork();
-    if (child == 0) {
-        struct rlimit none = {0, 0};
-        setrlimit(RLIMIT_CORE, &none);
-        signal(SIGABRT, SIG_DFL); /* not the handler of the test framework */
-        dup2(ends[1], STDERR_FILENO);
-        act();
-        _exit(0);
-    }
-    close(ends[1]);
-    size_t n = 0;
-    for (ssize_t k; n + 1 < size && (k = read(ends[0], out + n, size - 1 - n)) > 0;) n += (size_t)k;
-    out[n] = '\0';
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    return status;
-}
-
-/* last_words: what a process says before a CHECK ends it. */
-static void last_words(void (*act)(void), char *out, size_t size)
-{
-    const int status = words_of(act, out, size);
-    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT);
-}
+#include "../support/last_words.h"
 
 static void fail_plainly(void)
 {
@@ -83,7 +51,7 @@ static void a_failure_names_its_place_and_condition(void **state)
 {
     (void)state;
     char out[2000];
-    last_words(fail_plainly, out, sizeof out);
+    expect_abort(fail_plainly, out, sizeof out);
     assert_non_null(strstr(out, "test_check.c:"));
     assert_non_null(strstr(out, "CHECK(n == 4) failed"));
 }
@@ -92,7 +60,7 @@ static void a_failure_in_a_run_tells_of_the_run(void **state)
 {
     (void)state;
     char out[2000];
-    last_words(fail_in_a_run, out, sizeof out);
+    expect_abort(fail_in_a_run, out, sizeof out);
     assert_non_null(strstr(out, "failed; rank 17\n"));
 }
 
@@ -100,7 +68,7 @@ static void a_failing_note_does_not_come_back_for_ever(void **state)
 {
     (void)state;
     char out[2000];
-    last_words(fail_while_describing, out, sizeof out);
+    expect_abort(fail_while_describing, out, sizeof out);
     assert_non_null(strstr(out, "CHECK(context != "));
 }
 
@@ -153,7 +121,7 @@ static void misuse_of_the_base_is_found(void **state)
     void (*const misuses[])(void) = {json_left_open, json_value_without_key, json_two_documents,
                                      mark_released_twice};
     for (size_t i = 0; i < sizeof misuses / sizeof misuses[0]; i++) {
-        last_words(misuses[i], out, sizeof out);
+        expect_abort(misuses[i], out, sizeof out);
         assert_non_null(strstr(out, "CHECK("));
     }
 }

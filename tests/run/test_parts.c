@@ -22,6 +22,8 @@
 #include "run/result_parts.h"
 #include "run/run.h"
 
+#include "../support/last_words.h"
+
 /* Random bytes in all arrays of a result; every second time some are missing. */
 static void draw_result(struct random *r, struct run_result *out, struct arena *a)
 {
@@ -257,24 +259,16 @@ static _Noreturn void live(int number, enum how how)
     _exit(7);
 }
 
+static int its_number;
+static enum how its_state;
+static void live_as_told(void) { live(its_number, its_state); }
+
 /* A child that gets `number` in the state `how`: how it ends, and what it has said. */
 static int child(int number, enum how how, char *said, size_t size)
 {
-    int end[2], status;
-    assert_int_equal(pipe(end), 0);
-    const pid_t pid = fork();
-    assert_true(pid >= 0);
-    if (pid == 0) {
-        dup2(end[1], STDERR_FILENO);
-        live(number, how);
-    }
-    close(end[1]);
-    ssize_t n = 0, k;
-    while ((k = read(end[0], said + n, size - 1 - (size_t)n)) > 0) n += k;
-    said[n] = '\0';
-    close(end[0]);
-    assert_int_equal(waitpid(pid, &status, 0), pid);
-    return status;
+    its_number = number;
+    its_state = how;
+    return words_of(live_as_told, said, size);
 }
 
 static void whoever_ends_a_campaign_is_told_that_rows_stay(void **state)

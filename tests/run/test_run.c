@@ -7,8 +7,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -21,6 +19,8 @@
 #include "model/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
+
+#include "../support/last_words.h"
 
 enum { MOST_SETTINGS = 12 };
 
@@ -387,41 +387,25 @@ static void fail_a_check(void *context)
     CHECK(context == NULL && "planted");
 }
 
-/* What the process writes to stderr before a CHECK ends it, in a child. */
-static void last_words(const struct run_spec *spec, const struct run_order *order, char *text,
-                       int size)
+/* What words_of calls has no arguments. */
+static struct run_spec failing;
+static struct run_order failing_order;
+static void run_failing(void)
 {
-    int end[2];
-    assert_int_equal(pipe(end), 0);
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(end[1], STDERR_FILENO);
-        struct arena *a = arena_create();
-        struct run_result r;
-        struct err e = {0};
-        run_sharing(spec, order, run_cache_create(), a, &r, &e);
-        _exit(0);
-    }
-    close(end[1]);
-    int n = 0;
-    for (ssize_t k; n < size - 1 && (k = read(end[0], text + n, (size_t)(size - 1 - n))) > 0;)
-        n += (int)k;
-    text[n] = '\0';
-    close(end[0]);
-    int status;
-    waitpid(child, &status, 0);
-    assert_true(WIFSIGNALED(status));
+    struct run_result r;
+    struct err e = {0};
+    run_sharing(&failing, &failing_order, run_cache_create(), arena_create(), &r, &e);
 }
 
 static void a_failed_check_says_in_which_run(void **unused)
 {
     (void)unused;
     struct plan p;
-    struct run_spec spec = SPEC(&p, "level=link", "n=128", "seed=7");
     struct run_heartbeat heartbeat = {.beat = fail_a_check, .context = &heartbeat};
     char text[2048];
-    const struct run_order order = {.heartbeat = &heartbeat};
-    last_words(&spec, &order, text, (int)sizeof text);
+    failing = SPEC(&p, "level=link", "n=128", "seed=7");
+    failing_order = (struct run_order){.heartbeat = &heartbeat};
+    expect_abort(run_failing, text, sizeof text);
     assert_non_null(strstr(text, "planted"));
     assert_non_null(strstr(text, "kernel dynamics, n = 128, 128 ranks"));
     assert_non_null(strstr(text, "seed 7"));

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-void expect_abort(void (*act)(void), char *words, size_t size)
+int words_of(void (*act)(void), char *words, size_t size)
 {
     int ends[2], status = 0;
     assert_int_equal(pipe(ends), 0);
@@ -31,6 +31,12 @@ void expect_abort(void (*act)(void), char *words, size_t size)
     words[n] = '\0';
     close(ends[0]);
     assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+void expect_abort(void (*act)(void), char *words, size_t size)
+{
+    const int status = words_of(act, words, size);
     if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGABRT)
         fail_msg("no abort: status %d, '%s'", status, words);
 }

@@ -4,8 +4,11 @@
 
 #include <stddef.h>
 
-/* expect_abort: run `act` in a process of its own, which must end by abort(); what it wrote to its
- * standard error is in `words`. */
+/* words_of: run `act` in a process of its own; what it wrote to its standard error is in `words`.
+ * Returns how it ended, as waitpid says. */
+int words_of(void (*act)(void), char *words, size_t size);
+
+/* expect_abort: the same; it must end by abort(). */
 void expect_abort(void (*act)(void), char *words, size_t size);
 
 #endif
