@@ -12,19 +12,11 @@
 #include "base/random.h"
 #include "net/net_flit.h"
 #include "net/traffic.h"
-#include "study/netcheck.h"
 #include "study/netcheck_case.h"
 
-#define DATA MIMDSIM_SRCDIR "/tests/data/net/"
+#include "reference.h"
 
-static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
-{
-    struct err e;
-    bool level[LEVELS] = {[LEVEL_FLIT] = true};
-    err_clear(&e);
-    if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
-    assert_true(n->nrow > 0);
-}
+static const bool levels[LEVELS] = {[LEVEL_FLIT] = true};
 
 static void hand_cases_are_exact(void **state)
 {
@@ -32,7 +24,7 @@ static void hand_cases_are_exact(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     int exact = 0, stuck = 0;
-    ask(&n, DATA "hand_cases.json", " wormhole B", a);
+    ask(&n, levels, DATA "hand_cases.json", " wormhole B", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_row *row = &n.row[i];
         const struct netcheck_answer *x = &row->answer[LEVEL_FLIT];
@@ -54,7 +46,7 @@ static int exact_rows(const char *file, const char *filter, int64_t *messages)
     struct arena *a = arena_create();
     struct netcheck n;
     int count = 0;
-    ask(&n, file, filter, a);
+    ask(&n, levels, file, filter, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         if (!strstr(n.row[i].group, "vc=1")) continue;
@@ -96,7 +88,7 @@ static void several_channels_are_close(void **state)
     struct netcheck n;
     double sum = 0, worst = 0;
     int count = 0;
-    ask(&n, DATA "makespan.json", "torus", a);
+    ask(&n, levels, DATA "makespan.json", "torus", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         double error = x->error < 0 ? -x->error : x->error;
@@ -107,7 +99,7 @@ static void several_channels_are_close(void **state)
     }
     assert_true(count >= 220);
     assert_true(sum / count < 0.01 && worst < 0.15);
-    ask(&n, DATA "makespan_sensitivity.json", NULL, a);
+    ask(&n, levels, DATA "makespan_sensitivity.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         assert_true(x->found >= 0.98 * n.row[i].low && x->found <= 1.02 * n.row[i].high);
@@ -204,11 +196,8 @@ static void packets_wait_as_flits_do(void **state)
     (void)state;
     struct arena *a = arena_create();
     struct netcheck n;
-    struct err e;
-    bool level[LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
-    err_clear(&e);
-    if (!netcheck_run(&n, DATA "stages.json", level, "packets that fit", true, a, &e))
-        fail_msg("%s", e.text);
+    const bool level[LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
+    ask(&n, level, DATA "stages.json", "packets that fit", a);
     assert_int_equal(n.nrow, 1);
     for (int l = LEVEL_PACKET; l < LEVELS; l++)
         if (level[l]) assert_true(n.row[0].answer[l].ran && n.row[0].answer[l].differing == 0);

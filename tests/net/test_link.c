@@ -12,19 +12,11 @@
 #include "base/arena.h"
 #include "base/random.h"
 #include "net/traffic.h"
-#include "study/netcheck.h"
 #include "study/netcheck_case.h"
 
-#define DATA MIMDSIM_SRCDIR "/tests/data/net/"
+#include "reference.h"
 
-static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
-{
-    struct err e;
-    bool level[LEVELS] = {[LEVEL_LOGGP] = true, [LEVEL_LINK] = true};
-    err_clear(&e);
-    if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
-    assert_true(n->nrow > 0);
-}
+static const bool levels[LEVELS] = {[LEVEL_LOGGP] = true, [LEVEL_LINK] = true};
 
 static void hand_cases_without_blocking_are_exact(void **state)
 {
@@ -32,7 +24,7 @@ static void hand_cases_without_blocking_are_exact(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     int exact = 0, blocked = 0;
-    ask(&n, DATA "hand_cases.json", "cut-through", a);
+    ask(&n, levels, DATA "hand_cases.json", "cut-through", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_LINK];
         assert_true(x->ran);
@@ -56,7 +48,7 @@ static void steps_are_bounded_by_reference_and_loggp(void **state)
     (void)state;
     struct arena *a = arena_create();
     struct netcheck n;
-    ask(&n, DATA "makespan.json", NULL, a);
+    ask(&n, levels, DATA "makespan.json", NULL, a);
     assert_int_equal(n.nrow, 800);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK],
@@ -87,7 +79,7 @@ static void collectives_come_out_between(void **state)
     (void)state;
     struct arena *a = arena_create();
     struct netcheck n;
-    ask(&n, DATA "collectives.json", NULL, a);
+    ask(&n, levels, DATA "collectives.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *link = &n.row[i].answer[LEVEL_LINK],
                                      *loggp = &n.row[i].answer[LEVEL_LOGGP];

@@ -10,19 +10,11 @@
 #include <cmocka.h>
 
 #include "net/traffic.h"
-#include "study/netcheck.h"
 #include "study/netcheck_case.h"
 
-#define DATA MIMDSIM_SRCDIR "/tests/data/net/"
+#include "reference.h"
 
-static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
-{
-    struct err e;
-    bool level[LEVELS] = {[LEVEL_PACKET] = true};
-    err_clear(&e);
-    if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
-    assert_true(n->nrow > 0);
-}
+static const bool levels[LEVELS] = {[LEVEL_PACKET] = true};
 
 static void hand_cases_are_exact(void **state)
 {
@@ -30,7 +22,7 @@ static void hand_cases_are_exact(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     int exact = 0;
-    ask(&n, DATA "hand_cases.json", "cut-through", a);
+    ask(&n, levels, DATA "hand_cases.json", "cut-through", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_PACKET];
         assert_true(x->ran && x->error == 0);
@@ -68,7 +60,7 @@ static void steps_whose_messages_fit_the_buffers(void **state)
     struct netcheck n;
     double sum = 0, worst = 0;
     int count = 0, single = 0;
-    ask(&n, DATA "makespan.json", NULL, a);
+    ask(&n, levels, DATA "makespan.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_row *row = &n.row[i];
         const struct netcheck_answer *x = &row->answer[LEVEL_PACKET];
@@ -95,7 +87,7 @@ static void collectives(void **state)
     struct netcheck n;
     double sum = 0, worst = 0;
     int torus = 0, single = 0;
-    ask(&n, DATA "collectives.json", NULL, a);
+    ask(&n, levels, DATA "collectives.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_row *row = &n.row[i];
         const struct netcheck_answer *x = &row->answer[LEVEL_PACKET];
@@ -127,7 +119,7 @@ static void steps_of_several_packets_lie_in_the_band(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     int count = 0;
-    ask(&n, DATA "makespan_sensitivity.json", "torus", a);
+    ask(&n, levels, DATA "makespan_sensitivity.json", "torus", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_row *row = &n.row[i];
         if (flits_of(row->name) > buffer_of(row->name) && buffer_of(row->name) != 22) continue;
