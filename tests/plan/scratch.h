@@ -57,4 +57,21 @@ static inline struct plan scratch_plan(const char *name, const char *const *set,
     return p;
 }
 
+/* The folder of a test program, with open_scratch and close_scratch as its setup and teardown. */
+static struct scratch scratch;
+
+static inline int open_scratch(void **state)
+{
+    (void)state;
+    scratch_open(&scratch);
+    return 0;
+}
+
+static inline int close_scratch(void **state)
+{
+    (void)state;
+    scratch_close(&scratch);
+    return 0;
+}
+
 #endif

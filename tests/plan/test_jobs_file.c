@@ -3,8 +3,6 @@
 #include "base/random.h"
 #include "scratch.h"
 
-static struct scratch scratch;
-
 /* A machine of 32 processors; what follows is the scenario's. */
 #define TOP                                                                                        \
     "schema_version: 1\nquestion: what?\nmachine: t3e-300\nmachine.topology.dims: [4, 4, 2]\n"     \
@@ -182,6 +180,32 @@ static void lists_and_files_are_taken_as_they_are(void **state)
     plan_free(&p);
 }
 
+/* A place is several settings: what the file says besides gives way as a whole. */
+static void a_place_of_the_command_line_replaces_all_of_the_files(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "jobs:\n"
+        "- {name: a, kernel: barrier, ranks: 4,\n"
+        "   placement: {kind: random, seed: 9, spread: cyclic}}\n"
+        "- {name: b, kernel: barrier, ranks: 2, placement: {list: [1, 0], spread: cyclic}}\n";
+    static const char *const set[] = {"jobs.a.placement=contiguous", "jobs.b.placement=[30, 31]"};
+    static const int of_b[] = {30, 31};
+    struct plan p = read_jobs(text, NULL, 0), q = read_jobs(text, set, 2);
+    int at[PROCESSORS];
+    const struct placement_spec *file = &p.run[0].machine.placement,
+                                *typed = &q.run[0].machine.placement;
+    assert_true(file->kind == PLACEMENT_RANDOM && file->spread == SPREAD_CYCLIC);
+    assert_int_equal(file->seed, 9);
+    assert_true(typed->kind == PLACEMENT_LINEAR && typed->spread == SPREAD_BLOCK);
+    assert_true(typed->seed != 9);
+    assert_true(q.run[1].machine.placement.spread == SPREAD_BLOCK);
+    assert_int_equal(places(&q.run[0], 1, at), 2);
+    assert_memory_equal(at, of_b, sizeof of_b);
+    plan_free(&p);
+    plan_free(&q);
+}
+
 /* ---- what is none */
 
 /* Each with the line of the scenario behind TOP, 0: a setting of the command line, and a part of
@@ -251,20 +275,6 @@ static void every_wrong_line_is_told_with_its_place(void **state)
     }
 }
 
-static int open_scratch(void **state)
-{
-    (void)state;
-    scratch_open(&scratch);
-    return 0;
-}
-
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +283,7 @@ int main(void)
         cmocka_unit_test(settings_reach_one_job_alone),
         cmocka_unit_test(lists_that_meet_are_refused_and_no_others),
         cmocka_unit_test(lists_and_files_are_taken_as_they_are),
+        cmocka_unit_test(a_place_of_the_command_line_replaces_all_of_the_files),
         cmocka_unit_test(every_wrong_line_is_told_with_its_place),
     };
     return cmocka_run_group_tests(tests, open_scratch, close_scratch);

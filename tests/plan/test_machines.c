@@ -7,25 +7,10 @@
 #include "plan/machine_file.h"
 #include "spec/field.h"
 #include "spec/spec_fields.h"
+#include "support/arena_fixture.h"
 
-static struct scratch scratch;
-static struct arena *arena;
-
-static int open_scratch(void **state)
-{
-    (void)state;
-    scratch_open(&scratch);
-    arena = arena_create();
-    return 0;
-}
-
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
-    arena_destroy(arena);
-    return 0;
-}
+static int open_all(void **state) { return open_scratch(state) | make_arena(state); }
+static int close_all(void **state) { return close_scratch(state) | drop_arena(state); }
 
 static struct machine_spec machine(const char *name, struct origin **origin, int *norigin)
 {
@@ -438,5 +423,5 @@ int main(void)
         cmocka_unit_test(settings_of_a_machine_come_last),
         cmocka_unit_test(check_tells_machines_from_scenarios),
     };
-    return cmocka_run_group_tests(tests, open_scratch, close_scratch);
+    return cmocka_run_group_tests(tests, open_all, close_all);
 }

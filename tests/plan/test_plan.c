@@ -7,21 +7,6 @@
 
 enum { YAML_LARGE = DOCUMENT_MAX_SETTINGS + 2 };
 
-static struct scratch scratch;
-
-static int open_scratch(void **state)
-{
-    (void)state;
-    scratch_open(&scratch);
-    return 0;
-}
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
-    return 0;
-}
-
 static void the_speedup_scenario_has_its_points_in_order(void **state)
 {
     (void)state;

@@ -8,21 +8,6 @@
 #include "spec/field.h"
 #include "spec/spec_fields.h"
 
-static struct scratch scratch;
-
-static int open_scratch(void **state)
-{
-    (void)state;
-    scratch_open(&scratch);
-    return 0;
-}
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
-    return 0;
-}
-
 /* ---- damaged files */
 
 static const char *const tokens[] = {

@@ -7,21 +7,12 @@
 #include "spec/field.h"
 #include "spec/identity.h"
 
-static struct scratch scratch;
-
-static int open_scratch(void **state)
+static int open_with_folder(void **state)
 {
-    (void)state;
     char path[160];
-    scratch_open(&scratch);
+    open_scratch(state);
     snprintf(path, sizeof path, "%s/inside", scratch.dir);
     assert_int_equal(mkdir(path, 0700), 0);
-    return 0;
-}
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
     return 0;
 }
 
@@ -273,5 +264,5 @@ int main(void)
         cmocka_unit_test(files_outside_the_folder_need_permission),
         cmocka_unit_test(a_program_makes_a_scenario_by_itself),
     };
-    return cmocka_run_group_tests(test, open_scratch, close_scratch);
+    return cmocka_run_group_tests(test, open_with_folder, close_scratch);
 }

@@ -7,21 +7,6 @@
 #include "plan/condition.h"
 #include "plan/setting.h"
 
-static struct scratch scratch;
-
-static int open_scratch(void **state)
-{
-    (void)state;
-    scratch_open(&scratch);
-    return 0;
-}
-static int close_scratch(void **state)
-{
-    (void)state;
-    scratch_close(&scratch);
-    return 0;
-}
-
 /* Lines 1 to 3 of each scenario, and sizes for those that do not sweep them. */
 #define HEAD "schema_version: 1\nkernel: forward\nmachine: t3e-300\n"
 #define SIZES "ranks: 4\nn: 16\n"
