@@ -7,6 +7,12 @@
 #include "spec/collective_spec.h"
 #include "spec/run_spec.h"
 
+/* `why`, where the family has no such trait (topology_list.h). */
+static const char *unless(const struct run_spec *r, enum topology_trait trait, const char *why)
+{
+    return topology_has(r->machine.topology.family, trait) ? NULL : why;
+}
+
 const char *machine_idle_with_own_nodes(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_OWN_NODES)
@@ -24,70 +30,54 @@ const char *machine_idle_without_links(const struct run_spec *r)
 
 const char *machine_idle_unless_ring(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_RINGS)
-               ? NULL
-               : "only a torus has two equally long ways round";
+    return unless(r, TOPOLOGY_RINGS, "only a torus has two equally long ways round");
 }
 
 const char *machine_idle_unless_dragonfly(const struct run_spec *r)
 {
-    bool chooses = topology_has(r->machine.topology.family, TOPOLOGY_CHOOSES);
-    return chooses ? NULL : "only dragonflies and fat trees choose their routing";
+    return unless(r, TOPOLOGY_CHOOSES, "only dragonflies and fat trees choose their routing");
 }
 
 /* The Origin, whose routers have ports to spare. */
 const char *machine_idle_unless_hypercube(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_CUBE)
-               ? NULL
-               : "only a hypercube has Xpress links";
+    return unless(r, TOPOLOGY_CUBE, "only a hypercube has Xpress links");
 }
 
 /* HyperX, folded Clos and listed graphs count parallel cables; elsewhere two routers have one. */
 const char *machine_idle_unless_bundles(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_BUNDLES)
-               ? NULL
-               : "this topology has no bundles of parallel cables";
+    return unless(r, TOPOLOGY_BUNDLES, "this topology has no bundles of parallel cables");
 }
 
 /* A fat tree of one arity has as many switches above each as below. */
 const char *machine_idle_unless_levels(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_LEVELS)
-               ? NULL
-               : "only a folded Clos network says how many switches are above each";
+    return unless(r, TOPOLOGY_LEVELS,
+                  "only a folded Clos network says how many switches are above each");
 }
 
 /* The interval has a default, which must not look as if it acted. */
 const char *machine_idle_unless_express(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_EXPRESS)
-               ? NULL
-               : "only express cubes have express links";
+    return unless(r, TOPOLOGY_EXPRESS, "only express cubes have express links");
 }
 
 /* A plain torus comes in where it left. */
 const char *machine_idle_unless_twisted(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_TWISTED)
-               ? NULL
-               : "only a twisted torus shifts its wrap links";
+    return unless(r, TOPOLOGY_TWISTED, "only a twisted torus shifts its wrap links");
 }
 
 /* Placements and noise have seeds of their own. */
 const char *machine_idle_unless_seeded(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_SEEDED)
-               ? NULL
-               : "only a random network is drawn";
+    return unless(r, TOPOLOGY_SEEDED, "only a random network is drawn");
 }
 
 const char *machine_idle_unless_graph(const struct run_spec *r)
 {
-    return topology_has(r->machine.topology.family, TOPOLOGY_LISTED)
-               ? NULL
-               : "only family 'graph' takes its links from the file";
+    return unless(r, TOPOLOGY_LISTED, "only family 'graph' takes its links from the file");
 }
 
 const char *machine_idle_unless_tolerance(const struct run_spec *r)

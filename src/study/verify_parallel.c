@@ -95,7 +95,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
                             .kernel = *kernel,
                             .nrank = nrank};
     /* Forward kernels need inertias with inverses: bodies on fixed joints are lumped for them. */
-    const bool lumped = strcmp(kernel->name, "inverse") != 0;
+    const bool lumped = kernel_spec_has(kernel, PROGRAM_FORWARD);
     struct err refused;
     err_clear(&refused);
     if (spec.kernel.algebra == ALGEBRA_AUTO) spec.kernel.algebra = ALGEBRA_SPATIAL;
@@ -133,7 +133,7 @@ static void worst_take(struct verify_row *worst, struct verify_row *row, int nra
 
 /* The judgement of one number of ranks, into the worst of its variant. */
 static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x,
-                       int nrank, bool inverse)
+                       int nrank, bool forward)
 {
     const struct verify_options *o = v->options;
     bool good = x->kind == ANSWERED;
@@ -142,12 +142,12 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
     size_t used = strlen(s->ranks);
     snprintf(s->ranks + used, sizeof s->ranks - used, "%s%d", used ? "," : "", nrank);
     if (!good) text_copy(s->text, sizeof s->text, x->text);
-    verify_row_judge(v, &row, inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD, good ? x->x : NULL,
-                     inverse ? verify_tolerance_inverse(o) : verify_tolerance_forward(o));
+    verify_row_judge(v, &row, forward ? VERIFY_QDD_FD : VERIFY_TAU_ID, good ? x->x : NULL,
+                     forward ? verify_tolerance_forward(o) : verify_tolerance_inverse(o));
     /* A run that breaks down is the worst answer, and its reason is kept. */
     if (!good) snprintf(row.note, sizeof row.note, "breaks down: %.100s", x->text);
     worst_take(&s->answer, &row, nrank);
-    if (inverse || !v->vector->lambda) return;
+    if (!forward || !v->vector->lambda) return;
     struct verify_row lambda = {.worst_rank = 0};
     verify_row_judge(v, &lambda, VERIFY_LAMBDA, good ? x->lambda : NULL,
                      verify_tolerance_forward(o));
@@ -158,9 +158,9 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
 static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s,
                         struct err *e)
 {
-    bool inverse = strcmp(kernel->name, "inverse") == 0;
+    const bool forward = kernel_spec_has(kernel, PROGRAM_FORWARD);
     int rank[MAX_RANKS],
-        n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
+        n = ranks_choose(v->options, forward ? v->lumped->nbody : v->model->nbody, rank);
     *s = (struct spread){.ranks = ""};
     for (int i = 0; i < n; i++) {
         struct outcome x;
@@ -170,7 +170,7 @@ static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel,
         if (x.kind == REFUSED)
             text_copy(s->text, sizeof s->text, x.text);
         else
-            spread_add(s, v, &x, rank[i], inverse);
+            spread_add(s, v, &x, rank[i], forward);
         arena_release(v->arena, mark);
     }
     return true;
@@ -234,8 +234,8 @@ static bool row_keep(struct verify_case *v, const struct variant *variant,
 static bool variant_row(struct verify_case *v, const struct variant *variant, struct err *e)
 {
     struct kernel_spec kernel = variant->kernel;
-    bool inverse = strcmp(kernel.name, "inverse") == 0;
-    enum verify_quantity quantity = inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD;
+    const bool forward = kernel_spec_has(&kernel, PROGRAM_FORWARD);
+    enum verify_quantity quantity = forward ? VERIFY_QDD_FD : VERIFY_TAU_ID;
     struct spread s;
     kernel.precision = v->options->precision;
     if (!variant_run(v, &kernel, &s, e)) return false;
@@ -273,10 +273,10 @@ bool verify_parallel(struct verify_case *v, struct err *e)
     bool has_unfit = verify_unfit_body(v->lumped, unfit, sizeof unfit);
     for (int i = 0; i < VARIANTS; i++) {
         const struct variant *variant = &variant_table[i];
-        bool inverse = strcmp(variant->kernel.name, "inverse") == 0;
-        if (!(inverse ? v->vector->tau_id : v->vector->qdd_fd)) continue;
+        const bool forward = kernel_spec_has(&variant->kernel, PROGRAM_FORWARD);
+        if (!(forward ? v->vector->qdd_fd : v->vector->tau_id)) continue;
         if (variant->kernel.algebra == ALGEBRA_PLANAR && !planar) continue;
-        if (!inverse && has_unfit)
+        if (forward && has_unfit)
             verify_row_skip(v, variant->name, "qdd_fd", unfit);
         else if (!variant_row(v, variant, e))
             return false;
