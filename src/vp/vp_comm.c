@@ -25,42 +25,42 @@ static int64_t own_id(const struct message *m)
     return m->net.id & (((int64_t)1 << NET_ID_JOB) - 1);
 }
 
-/* Overhead and copying by the machine's segments (docs/network.md). Where one kernel
- * server serves the whole machine, the rank waits for its turn first and is busy for the
- * longer of the two. The span covers waiting for the server, too. */
+/* One end of a message: overhead and copying by the machine's segments (docs/network.md). Where one
+ * kernel server serves the whole machine, the rank waits for its turn first and is busy for the
+ * longer of the two. Returns how long without the waiting. */
+static inline sim_ps charge(struct vp *v, enum path_cause cause, sim_ps overhead, double per_byte,
+                            int64_t bytes)
+{
+    const struct software_spec *software = &v->world->machine->software;
+    if (software->offload == OFFLOAD_COPIES) per_byte = 0;
+    sim_ps cost = byte_cost(overhead, per_byte, bytes);
+    if (software->kernel_server) {
+        const sim_ps service = server_pass(v, bytes);
+        cost = cost > service ? cost : service;
+    }
+    const sim_ps served = v->clock;
+    vp_advance(v, v->clock + cost);
+    vp_path(v, cause, served, bytes);
+    return cost;
+}
+
+/* Spans cover waiting for the server, too. */
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
     const struct message_cost *s = message_cost(&w->software, m->bytes);
-    const double per_byte = w->machine->software.offload == OFFLOAD_COPIES ? 0 : s->send_byte;
-    sim_ps begin = v->clock, cost = byte_cost(s->send, per_byte, m->bytes);
-    if (w->machine->software.kernel_server) {
-        sim_ps service = server_pass(v, m->bytes);
-        cost = cost > service ? cost : service;
-    }
-    const sim_ps served = v->clock;
-    vp_advance(v, v->clock + cost);
-    vp_path(v, PATH_SEND, served, m->bytes);
-    vp_stage_time(v)->send_ps += cost;
+    const sim_ps begin = v->clock;
+    vp_stage_time(v)->send_ps += charge(v, PATH_SEND, s->send, s->send_byte, m->bytes);
     if (w->record->spans)
         vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, own_id(m));
 }
 
-/* The same at the other end, with costs of its own. */
 static void charge_receive(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
     const struct message_cost *s = message_cost(&w->software, m->bytes);
-    const double per_byte = w->machine->software.offload == OFFLOAD_COPIES ? 0 : s->recv_byte;
-    sim_ps begin = v->clock, cost = byte_cost(s->recv, per_byte, m->bytes);
-    if (w->machine->software.kernel_server) {
-        sim_ps service = server_pass(v, m->bytes);
-        cost = cost > service ? cost : service;
-    }
-    const sim_ps served = v->clock;
-    vp_advance(v, v->clock + cost);
-    vp_path(v, PATH_RECV, served, m->bytes);
-    vp_stage_time(v)->recv_ps += cost;
+    const sim_ps begin = v->clock;
+    vp_stage_time(v)->recv_ps += charge(v, PATH_RECV, s->recv, s->recv_byte, m->bytes);
     if (w->record->spans)
         vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, own_id(m));
 }
