@@ -16,7 +16,7 @@
 
 #include "reference.h"
 
-static const bool levels[LEVELS] = {[LEVEL_FLIT] = true};
+static const bool flit_level[LEVELS] = {[LEVEL_FLIT] = true};
 
 static void hand_cases_are_exact(void **state)
 {
@@ -24,7 +24,7 @@ static void hand_cases_are_exact(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     int exact = 0, stuck = 0;
-    ask(&n, levels, DATA "hand_cases.json", " wormhole B", a);
+    ask(&n, flit_level, DATA "hand_cases.json", " wormhole B", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_row *row = &n.row[i];
         const struct netcheck_answer *x = &row->answer[LEVEL_FLIT];
@@ -46,7 +46,7 @@ static int exact_rows(const char *file, const char *filter, int64_t *messages)
     struct arena *a = arena_create();
     struct netcheck n;
     int count = 0;
-    ask(&n, levels, file, filter, a);
+    ask(&n, flit_level, file, filter, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         if (!strstr(n.row[i].group, "vc=1")) continue;
@@ -88,7 +88,7 @@ static void several_channels_are_close(void **state)
     struct netcheck n;
     double sum = 0, worst = 0;
     int count = 0;
-    ask(&n, levels, DATA "makespan.json", "torus", a);
+    ask(&n, flit_level, DATA "makespan.json", "torus", a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         double error = x->error < 0 ? -x->error : x->error;
@@ -99,7 +99,7 @@ static void several_channels_are_close(void **state)
     }
     assert_true(count >= 220);
     assert_true(sum / count < 0.01 && worst < 0.15);
-    ask(&n, levels, DATA "makespan_sensitivity.json", NULL, a);
+    ask(&n, flit_level, DATA "makespan_sensitivity.json", NULL, a);
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
         assert_true(x->found >= 0.98 * n.row[i].low && x->found <= 1.02 * n.row[i].high);

@@ -7,7 +7,7 @@
 #include "plan/machine_file.h"
 #include "spec/field.h"
 #include "spec/spec_fields.h"
-#include "support/arena_fixture.h"
+#include "../support/arena_fixture.h"
 
 static int open_all(void **state) { return open_scratch(state) | make_arena(state); }
 static int close_all(void **state) { return close_scratch(state) | drop_arena(state); }
