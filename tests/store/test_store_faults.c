@@ -139,7 +139,7 @@ static void a_newer_schema_is_refused_with_both_versions(void **state)
     struct fixture *f = *state;
     fill(f->path, 1);
     sql(f->path, "PRAGMA user_version = 42");
-    expect(f, f->path, STORE_READ, ERR_DATA, "version 42, this program knows versions 4 to 9");
+    expect(f, f->path, STORE_READ, ERR_DATA, "version 42, this program knows versions 4 to 10");
     expect(f, f->path, STORE_WRITE, ERR_DATA, "newer mimdsim");
     sql(f->path, "PRAGMA user_version = 7");
     assert_int_equal(count_runs(f->path), 1);
