@@ -118,7 +118,8 @@ bool dense_invert(int c, real *A, struct work *w)
     account(w, 2 * c * c * c, c);
     for (int k = 0; k < c; k++) {
         const real pivot = A[k * c + k];
-        if (!(real_fabs(pivot) > 0)) return false;
+        /* The first comparison also refuses "not a number". */
+        if (!(real_fabs(pivot) > 0) || !__builtin_isfinite(pivot)) return false;
         const real inverse = 1 / pivot;
         /* The pivot's row, then all other rows; their column k starts anew from zero. */
         A[k * c + k] = 1;
