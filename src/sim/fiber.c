@@ -236,7 +236,8 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
 {
     CHECK(i >= 0 && i < p->n);
     struct fiber *f = &p->fiber[i];
-    *f = (struct fiber){.pool = p, .fn = fn, .argument = argument};
+    /* What ran in this place before has been counted, and stays so. */
+    *f = (struct fiber){.pool = p, .fn = fn, .argument = argument, .switches = f->switches};
     f->stack = p->base + p->stride * (size_t)i + p->page;
     /* Stacks lie a whole number of pages apart, so that their tops would compete for the same sets
      * of the first-level cache. Shifted tops keep the hot lines of different fibers apart. */
