@@ -129,7 +129,8 @@ bool collective_by_network(const struct collective_algorithm *a);
 /* collective_applies: whether the algorithm can do a call of this shape. */
 bool collective_applies(const struct collective_algorithm *a, const struct collective_shape *s);
 
-/* collective_shape: of a call. collective_shape_bytes: what rules compare. */
+/* collective_shape: of a call. collective_shape_bytes: what rules compare; 0 where blocks differ
+ * and not all ranks know them. */
 struct collective_shape collective_shape(const struct collective_call *k);
 int64_t collective_shape_bytes(const struct collective_shape *s);
 
