@@ -4,6 +4,7 @@
  * Each of these has a message that says what was given and writes the right command. */
 #include "app/arguments.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,12 +71,14 @@ struct store *arguments_look(const struct common *c, const char *otherwise, stru
     return NULL;
 }
 
-/* Digits only: "12x" is no run, and neither is "-1". */
+/* Digits only: "12x" is no run, and neither are "-1" and " 12", nor a number that no row can have.
+ */
 bool arguments_run_number(const char *text, struct err *e)
 {
-    char *end;
-    long long n = strtoll(text, &end, 10);
-    if (end != text && *end == '\0' && n >= 0) return true;
+    const size_t digits = strspn(text, "0123456789");
+    errno = 0;
+    strtoll(text, NULL, 10);
+    if (digits > 0 && text[digits] == '\0' && errno == 0) return true;
     return err_set(e, ERR_USAGE,
                    "'%s' is not the number of a run; "
                    "`mimdsim query DB 'SELECT id, scenario, n, P FROM run'` lists them",
