@@ -299,34 +299,48 @@ static void write_file(const char *path, const char *text)
     assert_int_equal(fclose(f), 0);
 }
 
+/* A folder with a database, a scenario, a text, and the name of what is not there. */
+struct files {
+    char folder[192], db[512], scenario[512], text[512], none[512];
+};
+
+static void make_files(struct files *f, const struct common *c)
+{
+    struct err e;
+    scratch_make(f->folder, sizeof f->folder);
+    scratch_path(f->db, sizeof f->db, f->folder, "a.db");
+    scratch_path(f->scenario, sizeof f->scenario, f->folder, "s.yaml");
+    scratch_path(f->text, sizeof f->text, f->folder, "t.txt");
+    scratch_path(f->none, sizeof f->none, f->folder, "none.db");
+    write_file(f->scenario, "schema_version: 1\nmachine: t3e-300\nkernel: {name: dynamics}\n");
+    write_file(f->text, "SELECT 1\n");
+    err_clear(&e);
+    struct store *s = arguments_store(c, f->db, &e);
+    assert_non_null(s);
+    store_close(s);
+}
+
 /* What is given in the place of a database is told apart. */
 static void what_is_no_database_is_told(void **state)
 {
-    char folder[192], db[512], scenario[512], text[512], none[512];
     struct common c = {.verb = "mimdsim query", .quiet = true};
+    struct files f;
     struct err e;
+    char right[1200];
     (void)state;
-    scratch_make(folder, sizeof folder);
-    scratch_path(db, sizeof db, folder, "a.db");
-    scratch_path(scenario, sizeof scenario, folder, "s.yaml");
-    scratch_path(text, sizeof text, folder, "t.txt");
-    scratch_path(none, sizeof none, folder, "none.db");
-    write_file(scenario, "schema_version: 1\nmachine: t3e-300\nkernel: {name: dynamics}\n");
-    write_file(text, "SELECT 1\n");
-    err_clear(&e);
-    struct store *s = arguments_store(&c, db, &e);
-    assert_non_null(s);
-    store_close(s);
+    make_files(&f, &c);
+    snprintf(right, sizeof right, "the database comes first: `mimdsim query %s %s`", f.db,
+             f.scenario);
     const struct {
         const char *first, *second, *words;
         enum err_kind kind;
     } row[] = {
-        {scenario, NULL, "scenario", ERR_USAGE},
-        {scenario, db, "the database comes first: `mimdsim query ", ERR_USAGE},
-        {"SELECT * FROM run", db, " \"SELECT * FROM run\"`", ERR_USAGE},
+        {f.scenario, NULL, "scenario", ERR_USAGE},
+        {f.scenario, f.db, right, ERR_USAGE},
+        {"SELECT * FROM run", f.db, " \"SELECT * FROM run\"`", ERR_USAGE},
         {"", NULL, "'' is not the name of a database", ERR_USAGE},
-        {none, NULL, "none.db", ERR_NO_INPUT},
-        {text, NULL, "t.txt", ERR_DATA},
+        {f.none, NULL, "none.db", ERR_NO_INPUT},
+        {f.text, NULL, "t.txt", ERR_DATA},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         c.arg[0] = row[i].first, c.arg[1] = row[i].second;
@@ -337,33 +351,36 @@ static void what_is_no_database_is_told(void **state)
             (!strstr(e.text, row[i].words) && !strstr(e.file, row[i].words)))
             fail_msg("row %d: %d '%s' '%s'", (int)i, e.kind, e.file, e.text);
     }
-    /* the right order is written out */
-    char right[1200];
-    c.arg[0] = scenario, c.arg[1] = db, c.narg = 2;
+    scratch_remove(f.folder);
+}
+
+/* The first argument, else the other name; one that is not kept leaves no file. */
+static void databases_are_opened_by_name(void **state)
+{
+    struct common c = {.verb = "mimdsim query", .quiet = true};
+    struct files f;
+    struct err e;
+    (void)state;
+    make_files(&f, &c);
     err_clear(&e);
-    assert_null(arguments_database(&c, "mimdsim.db", &e));
-    snprintf(right, sizeof right, "`mimdsim query %s %s`", db, scenario);
-    assert_non_null(strstr(e.text, right));
-    /* the first argument, else the other name */
-    c.arg[0] = db, c.narg = 1;
-    s = arguments_database(&c, none, &e);
+    c.arg[0] = f.db, c.narg = 1;
+    struct store *s = arguments_database(&c, f.none, &e);
     assert_non_null(s);
-    assert_string_equal(store_path(s), db);
+    assert_string_equal(store_path(s), f.db);
     store_close(s);
     c.narg = 0;
-    s = arguments_look(&c, db, &e);
+    s = arguments_look(&c, f.db, &e);
     assert_non_null(s);
     store_close(s);
     err_clear(&e);
-    assert_null(arguments_look(&c, none, &e));
+    assert_null(arguments_look(&c, f.none, &e));
     assert_int_equal(e.kind, ERR_NO_INPUT);
-    /* one that is not kept is not there */
     err_clear(&e);
-    s = arguments_store_whole(&c, none, &e);
+    s = arguments_store_whole(&c, f.none, &e);
     assert_non_null(s);
     store_close(s);
-    assert_int_not_equal(access(none, F_OK), 0);
-    scratch_remove(folder);
+    assert_int_not_equal(access(f.none, F_OK), 0);
+    scratch_remove(f.folder);
 }
 
 int main(void)
@@ -377,6 +394,7 @@ int main(void)
         cmocka_unit_test(wrong_lines_are_refused),
         cmocka_unit_test(numbers_of_runs_are_digits),
         cmocka_unit_test(what_is_no_database_is_told),
+        cmocka_unit_test(databases_are_opened_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
