@@ -52,6 +52,25 @@ static const char *short_key(const char *key)
     return field_short_key(t, prefix > 0 ? key + prefix + 1 : key);
 }
 
+static bool is_taken(const struct swept *w, const char *column)
+{
+    for (int i = 0; i < w->n; i++)
+        if (strcasecmp(w->name[i], column) == 0) return true;
+    return false;
+}
+
+/* Keys that only a sign or capitals tell apart, as x.y and x-y do, have one plain name: SQL would
+ * call the second "x_y:1", or lose it, so those that come later are counted. */
+static void own_name(const struct swept *w, const char *key, char *column)
+{
+    enum { NUMBER = 13 }; /* '_' and any int */
+    plain_name(short_key(key), column);
+    if (!is_taken(w, column)) return;
+    plain_name(key, column);
+    const size_t length = strlen(column), at = length < NAME - NUMBER ? length : NAME - NUMBER;
+    for (int i = 2; is_taken(w, column); i++) snprintf(column + at, NUMBER, "_%d", i);
+}
+
 /* One column more, unless there is one. */
 static bool take_key(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -61,9 +80,7 @@ static bool take_key(void *context, int ncolumn, const char *const *name, const 
     /* Keys of our own have no other signs: what a stranger wrote there is no column. */
     if (key == NULL || strlen(key) >= NAME || strpbrk(key, "'\"\\") != NULL) return true;
     char *column = w->name[w->n];
-    plain_name(short_key(key), column);
-    for (int i = 0; i < w->n; i++)
-        if (strcasecmp(w->name[i], column) == 0) plain_name(key, column);
+    own_name(w, key, column);
     /* model.n and ranks stand there as n and P. */
     if (is_fixed(column) || strcmp(key, "ranks") == 0 || strcmp(key, "scenario") == 0) return true;
     snprintf(w->key[w->n++], NAME, "%s", key);

@@ -180,6 +180,47 @@ static void any_key_is_a_plain_name_or_no_column(void **state)
     text_free(&t);
 }
 
+/* Keys that differ in a sign or in capitals alone: no column has the name of another, or the value
+ * of another. */
+static void keys_of_one_plain_name_are_columns_of_their_own(void **state)
+{
+    enum { LONG = 95 };
+    struct shown *x = *state;
+    struct run_spec spec = made_spec(x->a, "t3e-300", 8, 4, 0);
+    put(x, &spec, RUN_OK);
+    static const char *const key[] = {"X_Y", "x-y", "x.y", "x_y", "x_y_2"};
+    struct text t = {0};
+    for (int i = 0; i < 5; i++)
+        text_add(&t,
+                 "INSERT INTO setting (id, key, value) VALUES (%d, '%s', 'v%d'), (%d, '%s', 'w');"
+                 "INSERT INTO run_setting (run_id, setting_id) VALUES (1, %d);",
+                 9000 + i, key[i], i, 9100 + i, key[i], 9000 + i);
+    sql(x->file->path, t.s);
+    sweep(x);
+    assert_string_equal(rows(x, x->s, swept_columns), "X_Y,x_y_2,x_y_2_2,x_y_3,x_y_4");
+    /* in the order of keys, capitals first: each column has the value of its own key */
+    assert_string_equal(
+        rows(x, x->s, "SELECT X_Y, x_y_2, x_y_3, x_y_4, x_y_2_2 FROM v_swept"), "v0 v1 v2 v3 v4");
+    /* as long as a key may be, where a number has no room behind it */
+    text_free(&t);
+    for (int i = 0; i < 12; i++) {
+        char longest[LONG + 1];
+        memset(longest, 'k', LONG);
+        for (int bit = 0; bit < 4; bit++)
+            if (i >> bit & 1) longest[LONG - 1 - bit] = 'K';
+        longest[LONG] = '\0';
+        text_add(&t, "INSERT INTO setting (key, value) VALUES ('%s', 'a'), ('%s', 'b');", longest,
+                 longest);
+    }
+    sql(x->file->path, t.s);
+    sweep(x);
+    assert_string_equal(rows(x, x->s,
+                             "SELECT count(*), count(DISTINCT lower(name)), total(name LIKE '%:%'),"
+                             " max(length(name)) FROM pragma_table_info('v_swept')"),
+                        "27 27 0.0 95");
+    text_free(&t);
+}
+
 /* It is written when something has changed, and goes when nothing differs any more. */
 static void the_view_is_written_when_it_changes(void **state)
 {
@@ -411,6 +452,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(what_differs_is_a_column),
         TEST(any_key_is_a_plain_name_or_no_column),
+        TEST(keys_of_one_plain_name_are_columns_of_their_own),
         TEST(the_view_is_written_when_it_changes),
         TEST(a_row_is_its_run),
         TEST(a_view_of_a_user_keeps_its_name),
