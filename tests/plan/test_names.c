@@ -163,6 +163,7 @@ static void files_are_known_by_what_is_in_them(void **state)
         {"9.yaml", sqlite, sizeof sqlite, FILE_DATABASE},
         {"10", sqlite, sizeof sqlite, FILE_DATABASE},
         {"11", sqlite, sizeof sqlite - 1, FILE_UNKNOWN},
+        {"15", "SQLite format 3\n", 0, FILE_UNKNOWN},
         {"12.urdf", "", 0, FILE_ROBOT},
         {"13.json", "", 0, FILE_CASES},
         {"14.JSON", "", 0, FILE_UNKNOWN},
@@ -310,15 +311,17 @@ static void runs_are_called_by_what_was_changed(void **state)
     assert_string_equal(run.called, "mine, hop_latency 1 us");
 }
 
-int main(void){
-    TEST(names_are_those_of_both_folders_once_and_sorted),
-    TEST(a_name_means_the_nearest_file),
-    TEST(parts_of_paths),
-    TEST(files_are_known_by_what_is_in_them),
-    TEST(a_mistaken_file_is_answered_with_its_verb),
-    TEST(changes_are_what_the_machine_has_otherwise),
-    TEST(changes_between_two_machines),
-    TEST(runs_are_called_by_what_was_changed),
-};
-return cmocka_run_group_tests(tests, NULL, NULL);
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(names_are_those_of_both_folders_once_and_sorted),
+        TEST(a_name_means_the_nearest_file),
+        TEST(parts_of_paths),
+        TEST(files_are_known_by_what_is_in_them),
+        TEST(a_mistaken_file_is_answered_with_its_verb),
+        TEST(changes_are_what_the_machine_has_otherwise),
+        TEST(changes_between_two_machines),
+        TEST(runs_are_called_by_what_was_changed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }
