@@ -4,7 +4,13 @@
 
 #include "report/timeline.h"
 
-enum { NKIND = SPAN_BARRIER + 1 };
+enum { NKIND = SPAN_BARRIER + 1, MOST_COLUMNS = 500 };
+
+/* As many letters as a line of any terminal holds. */
+static int columns_of(const struct timeline *t)
+{
+    return t->columns < MOST_COLUMNS ? t->columns : MOST_COLUMNS;
+}
 
 /* How much of the span lies in [begin, end) [ps]. */
 static int64_t overlap(const struct span *p, int64_t begin, int64_t end)
@@ -21,8 +27,8 @@ static void put_rank(const struct timeline *t, int64_t first, int64_t next, int6
 {
     /* in the order of enum span_kind */
     static const char sign[] = "#><.|";
-    char stage_bar[512], bar[512];
-    int columns = t->columns < 500 ? t->columns : 500;
+    char stage_bar[MOST_COLUMNS], bar[MOST_COLUMNS];
+    const int columns = columns_of(t);
     int64_t from = first;
     /* One column is the time from left to right. Spans that ended before it are not looked at
      * again, so the whole line takes one pass. */
@@ -64,7 +70,7 @@ void trace_text(const struct timeline *t, FILE *out)
     if (t->end_ps < end) end = t->end_ps;
     if (*t->title) fprintf(out, "%s\n", t->title);
     fprintf(out, "%.3f to %.3f us, one letter is %.3f us\n", (double)begin * 1e-6,
-            (double)end * 1e-6, (double)(end - begin) * 1e-6 / t->columns);
+            (double)end * 1e-6, (double)(end - begin) * 1e-6 / columns_of(t));
     fputs("what: # compute  > send  < receive  . wait  | barrier\nstages:", out);
     /* A letter for each stage, as in the bars. */
     for (int i = 0; i < t->run->nstage; i++)
