@@ -90,11 +90,11 @@ static void read_all(struct fixture *f)
 static void claims_are_in_the_order_of_their_numbers(void **state)
 {
     struct fixture *f = *state;
-    static const char *const id[] = {"C1", "C2", "C10", "balance", "waste"};
+    static const char *const id[] = {"C1", "C2", "C10", "Balance", "waste"};
     put_claim(f, "waste.sql", -1, "SELECT 1");
     put_claim(f, "C10.sql", -1, "SELECT 1");
     put_claim(f, "C2.sql", -1, "SELECT 1");
-    put_claim(f, "balance.sql", -1, "SELECT 1");
+    put_claim(f, "Balance.sql", -1, "SELECT 1");
     put_claim(f, "C1.sql", -1, "SELECT 1");
     /* these are no claims */
     put_claim(f, "C3.txt", -1, "");
@@ -428,6 +428,10 @@ static void verdicts_are_printed_for_people_and_programs(void **state)
         if (next == NULL) fail_msg("%s is not behind the others in %s", part[i], s);
         at = next + 1;
     }
+    /* the claim itself is no variant of it */
+    int variants = 0;
+    for (at = s; (at = strstr(at, "\"variant\"")) != NULL; at++) variants++;
+    assert_int_equal(variants, 2);
     free(s);
 }
 
