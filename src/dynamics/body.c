@@ -41,6 +41,8 @@ static void make_frames(const struct model *m, int i, struct body *b)
     round_to(&b->unit, &c.unit, 1);
     b->pitch = (real)def->pitch;
     body_springs(m, i, b);
+    /* The rate of a helical joint is u = q' / unit; unit is 1 for all others. */
+    b->rate_stiffness *= b->unit;
 }
 
 /* Whether bodies i and j have the same inertia, in frames turned alike; whether all else is the

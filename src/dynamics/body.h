@@ -29,6 +29,7 @@ struct body {
     /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
     real slide[9];
     real stiffness, rest, damping;
+    real rate_stiffness; /* k q' / u: what the spring's force loses in time for each u */
 };
 
 /* joint_pick: the unit vectors that are H's and W's columns for a joint type (6); NULL: they are

@@ -107,8 +107,8 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         own.call++;
         own.flop += BODY_GYRO_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
         if (!body->has_spring) continue;
-        given[body->u_at] -= h * body->stiffness * u[body->u_at];
-        resistance[body->u_at] = h * (body->damping + h * body->stiffness);
+        given[body->u_at] -= h * body->rate_stiffness * u[body->u_at];
+        resistance[body->u_at] = h * (body->damping + h * body->rate_stiffness);
         own.flop += 3 + 3; /* less h k u; h (c + h k) */
     }
     /* Tip to base as in aba.c: a spring resists at its own joint and couples no bodies. */

@@ -25,6 +25,7 @@ struct body {
     real per_m, per_jc;  /* their inverses, zero when there are none */
     real frame[9];       /* rows: normal, x, y in the user's body axes */
     real stiffness, rest, damping;
+    real rate_stiffness; /* k q' / u: what the spring's force loses in time for each u */
 };
 
 /* body_gyro: P (3) from the body's own velocity: the normal is a principal axis as far as work is

@@ -26,14 +26,14 @@ static inline real implicit_step(const struct kernel_job *job)
 /* spring_resistance: s of a body's joint; 0: its forces are explicit. */
 static inline real spring_resistance(const struct body *b, real h)
 {
-    return b->has_spring ? h * (b->damping + h * b->stiffness) : 0;
+    return b->has_spring ? h * (b->damping + h * b->rate_stiffness) : 0;
 }
 
 /* spring_force: tau_0 for tau (d), to which body_spring has added the forces at the begin of the
  * step. */
 static inline void spring_force(const struct body *b, real h, const real *u, real *tau)
 {
-    if (b->has_spring && h > 0) tau[0] -= h * b->stiffness * u[0];
+    if (b->has_spring && h > 0) tau[0] -= h * b->rate_stiffness * u[0];
 }
 
 #endif

@@ -100,6 +100,42 @@ static void one_step_is_the_textbooks_matrix(void **state)
     scene_end(&s);
 }
 
+/* A screw alone, backward Euler in (q, u) with q' = u / sqrt(1 + p^2): its mass against u is (I + m
+ * p^2) / (1 + p^2), and the velocity after the step is that of the spring at its end. */
+static void a_screws_implicit_step_ends_where_its_spring_is(void **state)
+{
+    (void)state;
+    const double m = 1.5, inertia = 0.3, k = 40, c = 0.7, rest = 0.1, h = 0.06;
+    for (int trial = 0; trial < 5; trial++) {
+        const double p = 0.5 * trial, per = sqrt(1 + p * p),
+                     mass = (inertia + m * p * p) / per / per;
+        const double q = 0.4 - 0.3 * trial, u = 0.8 * trial - 1;
+        struct scene s = {.a = arena_create()};
+        struct err e;
+        err_clear(&e);
+        struct body_def b = {.name = "screw",
+                             .parent = -1,
+                             .joint = JOINT_HELICAL,
+                             .axis = {0, 0, 1},
+                             .pitch = p,
+                             .mass = m,
+                             .inertia = {1, 0, 0, 1, 0, inertia},
+                             .stiffness = k,
+                             .rest = rest,
+                             .damping = c};
+        s.model = model_begin(s.a, NULL);
+        assert_true(model_add_body(s.model, &b, &e) >= 0);
+        assert_true(model_finish(s.model, false, &e));
+        s.state = state_take(s.model, s.a);
+        s.state->q[0] = rest + q, s.state->qd[0] = u;
+        assert_true(exact()->advance(s.model, s.state, STEP_LINEARLY_IMPLICIT, h, 1, s.a, NULL));
+        const double after = (mass * u - h * k * q) / (mass + h * c + h * h * k / per);
+        assert_true(fabs(s.state->qd[0] - after) < 1e-13);
+        assert_true(fabs(s.state->q[0] - rest - q - h * after / per) < 1e-13);
+        scene_end(&s);
+    }
+}
+
 /* Without a damper: q = a cos wt + b / w sin wt. */
 static void every_stepper_follows_the_cosine(void **state)
 {
@@ -355,6 +391,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(symplectic_steps_keep_their_own_energy),
         cmocka_unit_test(one_step_is_the_textbooks_matrix),
+        cmocka_unit_test(a_screws_implicit_step_ends_where_its_spring_is),
         cmocka_unit_test(every_stepper_follows_the_cosine),
         cmocka_unit_test(a_trajectory_that_fails_moves_nothing),
         cmocka_unit_test(steps_keep_quaternions_of_length_one),
