@@ -28,6 +28,8 @@ changed() {
     works mimdsim run four-bar -o a.db -q --set level=flit,auto
     works mimdsim run speedup-t3e -o a.db -q --set n=4 --set machine.noise.compute=5% --set seed=1,2
     works mimdsim run speedup-t3e -o a.db -q --set n=8 --keep-all
+    # what people call a run is no answer of it
+    works mimdsim run speedup-t3e -o a.db -q --set n=2 --name "Mine, links x2"
     fails_with 70 mimdsim run deadlock -o a.db -q
     # when nothing moved any more, and all ranks have waited or worked until then
     sql_is a.db "SELECT count(*), min(makespan_ps > 0), max(accounting_error_ps) FROM run WHERE status = 'deadlock'" '1|1|0'
