@@ -70,7 +70,8 @@ static void exchange(struct pipes *p, const struct text *in, struct text *out)
         struct pollfd ready[2] = {{.fd = p->to[1], .events = POLLOUT},
                                   {.fd = p->from[0], .events = POLLIN}};
         if (poll(ready, 2, -1) < 0 && errno != EINTR) break;
-        if (ready[0].revents != 0) {
+        /* There is a pipe to the child where there is something to write. */
+        if (in != NULL && ready[0].revents != 0) {
             const ssize_t n = write(p->to[1], in->s + written, in->length - written);
             if (n > 0) written += (size_t)n;
             if ((n < 0 && errno != EINTR && errno != EAGAIN) || written == in->length)

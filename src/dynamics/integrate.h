@@ -17,8 +17,9 @@ bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const re
                       struct work *w);
 
 /* implicit_forward: ud that gives velocities at the end of a step of h when spring and damper
- * forces are those at its end, linearised: (M + s) ud = tau - k (q - rest + h q') - c u - xi, s = h
- * c + h^2 k q'/u, physics (9.0); q' = u but for helical joints. Open systems only. Returns false when a pivot is not positive. */
+ * forces are those at its end, linearised: (M + s) ud = tau - k (q - rest + h q') - c u - xi,
+ * s = h c + h^2 k q'/u, physics (9.0); q' = u but for helical joints. Open systems only. Returns
+ * false when a pivot is not positive. */
 bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau,
                       real *ud, struct work *w);
 

@@ -157,7 +157,7 @@ draw_all() {
     if ! command -v gnuplot >/dev/null; then skip; fi
     every_figure
     # What is left of a figure when these are changed is told by the next test.
-    chosen='run.kernel run.status run.base run.placement run.solver run.part_solver run.formulation run.operators run.level run.scenario run.machine run.topology run.precision
+    chosen='run.kernel run.status run.base run.placement run.solver run.part_solver run.formulation run.operators run.level run.scenario run.machine run.topology run.precision link_loads.entries
             baseline.name stage.name check_point.suite check_point.quantity check_point.unit check_point.verdict
             setting.key span.kind claim.verdict claim.variant claim.id ladder.ladder ladder.quantity ladder.method ladder.rung
             ladder.status ladder.at ladder.scenario ladder_choice.ladder stability.precision stability.algorithm
