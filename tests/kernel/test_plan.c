@@ -1,6 +1,7 @@
 /* test_plan.c - plans of random trees carried out step by step on a plain forest: each operation
  * may happen when its turn comes, those of a round do not touch each other, and all are done at the
- * end; lists and ancestors against their definitions. */
+ * end; lists and ancestors against their definitions; rows of a reduction. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -268,6 +269,71 @@ static void the_owner_of_a_row_is_found(void **state)
     }
 }
 
+/* A row [L D U r] lies in one piece; where there is no neighbour its block has the row's order. A
+ * neighbour v behind the coupling K is folded in: D -= K D_v^-1 back, r -= K D_v^-1 r_v, next =
+ * -K D_v^-1 onward; held against a solution of D_v X = [back onward r_v]. */
+static void a_folded_row_has_what_elimination_leaves(void **state)
+{
+    (void)state;
+    struct random g = random_make(66, 0, 0);
+    for (int trial = 0; trial < 7 * 7 * 7; trial++) {
+        enum { M = 2, WIDEST = 6 + 6 + M };
+        const int c = trial % 7, n = trial / 7 % 7, far = trial / 49, width = c + far + M;
+        double base[150], other[150], K[36], back[36], onward[36], next[36], A[36];
+        double X[6 * WIDEST], D[36], r[6 * M];
+        struct textbook_row row = textbook_row_at(base, c, n, 0);
+        struct textbook_row v = textbook_row_at(other, n, c, far);
+        struct work w = {0};
+        assert_ptr_equal(row.L, base);
+        assert_int_equal(row.D - row.L, c * (n > 0 ? n : c));
+        assert_int_equal(row.U - row.D, c * c);
+        assert_int_equal(row.r - row.U, c * c);
+        assert_int_equal(v.r - v.U, n * (far > 0 ? far : n));
+        for (int i = 0; i < 36; i++) {
+            K[i] = random_uniform(&g, -1, 1), back[i] = random_uniform(&g, -1, 1);
+            onward[i] = random_uniform(&g, -1, 1);
+        }
+        for (int i = 0; i < 150; i++) base[i] = other[i] = random_uniform(&g, -1, 1);
+        for (int i = 0; i < n; i++) v.D[i * n + i] += 8;
+        memcpy(A, v.D, sizeof *A * (size_t)(n * n));
+        memcpy(D, row.D, sizeof *D * (size_t)(c * c));
+        memcpy(r, row.r, sizeof *r * (size_t)(c * M));
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < width; j++)
+                X[i * width + j] = j < c         ? back[i * c + j]
+                                   : j < c + far ? onward[i * far + j - c]
+                                                 : v.r[i * M + j - c - far];
+        if (n > 0) assert_true(dense_solve_general(n, width, A, X, &w));
+        assert_true(textbook_row_fold(&row, K, &v, back, onward, far, next, M, &w));
+        for (int i = 0; i < c; i++)
+            for (int j = 0; j < width; j++) {
+                double sum = 0;
+                for (int k = 0; k < n; k++) sum += K[i * n + k] * X[k * width + j];
+                const double got = j < c ? D[i * c + j] - row.D[i * c + j]
+                                   : j < c + far
+                                       ? -next[i * far + j - c]
+                                       : r[i * M + j - c - far] - row.r[i * M + j - c - far];
+                if (!(fabs(got - sum) < 1e-13)) fail_msg("%d %d %d: %g %g", c, n, far, got, sum);
+            }
+    }
+    /* a neighbour without an inverse is told */
+    double base[32] = {0}, other[32] = {0}, K[4] = {0}, next[4];
+    struct textbook_row row = textbook_row_at(base, 2, 2, 0), v = textbook_row_at(other, 2, 2, 0);
+    struct work w = {0};
+    assert_false(textbook_row_fold(&row, K, &v, K, K, 0, next, 1, &w));
+}
+
+static void the_condition_is_the_largest_growth(void **state)
+{
+    (void)state;
+    const double before[4] = {2, 8, 1, NAN}, pivot[4] = {0.5, 3, 10, 1};
+    assert_true(reduction_condition(0, before, pivot) == 0);
+    assert_true(reduction_condition(1, before, pivot) == 1);
+    assert_true(reduction_condition(2, before, pivot) == 24);
+    assert_true(reduction_condition(3, before, pivot) == 24);
+    assert_true(reduction_condition(4, before, pivot) == 24); /* no number: broken tells of it */
+}
+
 /* What is measured is what is laid out: pieces lie one behind the other, each on its 16 bytes. */
 static void measuring_and_laying_out_agree(void **state)
 {
@@ -299,6 +365,8 @@ int main(void)
         cmocka_unit_test(the_extremes_of_a_split),
         cmocka_unit_test(stars_and_chains_take_known_rounds),
         cmocka_unit_test(the_owner_of_a_row_is_found),
+        cmocka_unit_test(a_folded_row_has_what_elimination_leaves),
+        cmocka_unit_test(the_condition_is_the_largest_growth),
         cmocka_unit_test(measuring_and_laying_out_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
