@@ -30,19 +30,30 @@ static int compare_columns(const void *a, const void *b)
     return order ? order : x->at - y->at;
 }
 
+static bool is_column(const struct document_rows *d, const char *name)
+{
+    for (int i = 0; i < d->ncolumn; i++)
+        if (strcmp(d->column[i].name, name) == 0) return true;
+    return false;
+}
+
 /* Columns of one name, which a join may give, would be one key: the second becomes "name:1", as
- * SQLite calls it. */
+ * SQLite calls it, or has the first number behind it that no other column has. */
 static void name_apart(struct document_rows *d)
 {
-    for (int i = 0, first = 0; i < d->ncolumn; i++) {
+    for (int i = 0, first = 0, number = 1; i < d->ncolumn; i++) {
         struct text t = {0};
-        if (strcmp(d->column[first].name, d->column[i].name) != 0) first = i;
+        if (strcmp(d->column[first].name, d->column[i].name) != 0) first = i, number = 1;
         if (first == i) continue;
-        /* "x", "x:1", "x:2" */
-        text_add(&t, "%s:%d", d->column[first].name, i - first);
+        do {
+            t.length = 0;
+            text_add(&t, "%s:%d", d->column[first].name, number++);
+        } while (is_column(d, t.s));
         d->column[i].name = arena_text(d->a, t.s);
         text_free(&t);
     }
+    /* "x:1" may stand behind "x!" */
+    qsort(d->column, (size_t)d->ncolumn, sizeof *d->column, compare_columns);
 }
 
 /* Keys are sorted once, for all rows. */
