@@ -113,36 +113,57 @@ static bool concentrated(struct netcheck_reader *r, const struct node *c,
 
 /* ---- arbitrary networks ---- */
 
+static const char blanks[] = " \t\r";
+
+/* "node 12" at *at, which goes behind it and never over the end of the line: the next line's first
+ * word would be one of this line. */
+static bool take_pair(const char **at, char word[16], int *number)
+{
+    const char *s = *at + strspn(*at, blanks);
+    const size_t n = strspn(s, "abcdefghijklmnopqrstuvwxyz");
+    char *end;
+    if (n == 0 || n > 15) return false;
+    snprintf(word, 16, "%.*s", (int)n, s);
+    s += n;
+    s += strspn(s, blanks);
+    if (*s < '0' || *s > '9') return false;
+    const long x = strtol(s, &end, 10);
+    *number = x < NETCHECK_MOST_NODES ? (int)x : NETCHECK_MOST_NODES;
+    *at = end + strspn(end, blanks);
+    return true;
+}
+
 /* One line: the router, its nodes, its neighbours with larger numbers. Nodes are numbered router by
  * router, as many on each. */
 static bool routers_line(const char *path, int line, const char *text, struct topology_spec *s,
                          int *nlink, int *nodes, struct err *e)
 {
-    int head = -1, number, used;
+    int head = -1, number;
     char word[16];
     *nodes = 0;
     /* The first router is the line's own; what follows hangs on it. */
     while (*text && *text != '\n') {
-        if (sscanf(text, " %15[a-z] %d%n", word, &number, &used) != 2 || number < 0)
+        if (!take_pair(&text, word, &number))
             return err_set_at(e, ERR_DATA, path, line,
                               "expected 'router R node N ... router R ...'");
-        text += used;
-        while (*text == ' ') text++;
-        if (strcmp(word, "node") == 0) {
-            ++*nodes;
-        } else if (strcmp(word, "router") != 0) {
+        const bool router = strcmp(word, "router") == 0;
+        if (router && number == NETCHECK_MOST_NODES)
+            return err_set_at(e, ERR_DATA, path, line,
+                              "the number of a router is too large; expected less than %d",
+                              NETCHECK_MOST_NODES);
+        if (router && number >= s->dims[0]) s->dims[0] = number + 1;
+        if (strcmp(word, "node") == 0) ++*nodes;
+        else if (!router)
             return err_set_at(e, ERR_DATA, path, line, "'%s'; expected 'router' or 'node'", word);
-        } else if (head < 0) {
-            head = number;
-        } else {
+        else if (head < 0) head = number;
+        else if (number > head) {
             /* Each cable stands in both of its routers' lines. */
-            if (s->link && number > head) {
+            if (s->link) {
                 s->link[*nlink][0] = head;
                 s->link[*nlink][1] = number;
             }
-            *nlink += number > head;
+            ++*nlink;
         }
-        if (strcmp(word, "router") == 0 && number >= s->dims[0]) s->dims[0] = number + 1;
     }
     return true;
 }
@@ -155,6 +176,13 @@ bool netcheck_routers_read(const char *path, const char *text, struct arena *a,
     for (int pass = 0; pass < 2; pass++) {
         int nlink = 0, line = 1, nodes;
         for (const char *at = text; *at; line++) {
+            /* Lines of blanks alone say nothing. */
+            at += strspn(at, blanks);
+            if (*at == '\n') {
+                at++;
+                continue;
+            }
+            if (*at == '\0') break;
             if (!routers_line(path, line, at, s, &nlink, &nodes, e)) return false;
             if (nodes != s->nodes_per_router && s->nodes_per_router > 0)
                 return err_set_at(e, ERR_DATA, path, line,
