@@ -225,13 +225,19 @@ static void partners_are_the_two_ends_of_a_message(void **state)
         }
     }
     assert_true(pairs > 100 && alone > 100);
+    /* two sends of one number are no pair */
+    struct span twice[2] = {{.kind = SPAN_SEND, .message = 4}, {.kind = SPAN_SEND, .message = 4}};
+    const struct span *both[2] = {&twice[0], &twice[1]};
+    int64_t *none = timeline_partners(&(struct timeline){.nspan = 2, .span = both});
+    assert_true(none[0] == -1 && none[1] == -1);
+    free(none);
     free(d);
 }
 
 static void kinds_and_stages_have_words(void **state)
 {
     (void)state;
-    struct run_result r = {.nstage = 2, .stage_name = {"first", "second"}};
+    struct run_result r = {.nstage = 2, .stage_name = {"first", "second", "beyond"}};
     const struct timeline t = {.run = &r};
     assert_string_equal(timeline_kind(SPAN_COMPUTE), "compute");
     assert_string_equal(timeline_kind(SPAN_BARRIER), "barrier");
