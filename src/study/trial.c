@@ -19,7 +19,8 @@ double trial_error(const double *x, const double *reference, int n)
 {
     double difference = 0, scale = 0;
     for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return INFINITY;
+        /* fmax would pass over what is no number */
+        if (!isfinite(x[i]) || !isfinite(reference[i])) return INFINITY;
         difference = fmax(difference, fabs(x[i] - reference[i]));
         scale = fmax(scale, fabs(reference[i]));
     }

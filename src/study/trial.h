@@ -42,8 +42,8 @@ bool trial_open(struct program_run *r, const struct run_spec *spec, const struct
 /* trial_machine: a crossbar of nrank processors; answers do not depend on the machine. */
 struct machine_spec trial_machine(int nrank);
 
-/* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no
- * numbers, 0 for equal. */
+/* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x or the
+ * reference has what is no number, 0 for equal. */
 double trial_error(const double *x, const double *reference, int n);
 
 /* trial_change_error: max |x - reference| over the largest number (of n) that the reference has at
