@@ -133,6 +133,10 @@ static void forms_are_told_by_one_key_each(void **state)
         {"{\"topology\": \"mesh4x4\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 4, "
          "\"makespan\": 9}",
          NETCHECK_STEP, true},
+        /* a number of messages tells no case by hand */
+        {"{\"topology\": \"mesh4x4\", \"pattern\": \"shift\", \"distance\": 1, \"flits\": 4, "
+         "\"messages\": 4}",
+         NETCHECK_STEP, false},
         {"{\"topology\": \"mesh4x4\", \"trace\": {}, \"distance\": 1}", NETCHECK_LIST, false},
         {"{\"topology\": \"mesh4x4\", \"trace\": {}, \"messages\": 4, \"completion\": []}",
          NETCHECK_LIST, true},
@@ -152,7 +156,8 @@ static void forms_are_told_by_one_key_each(void **state)
         assert_int_equal(form, row[i].form);
         assert_int_equal(referred, row[i].referred);
     }
-    assert_int_equal(f->n.nignored, 0);
+    assert_int_equal(f->n.nignored, 1);
+    assert_string_equal(f->n.ignored[0], "messages");
 }
 
 static void keys_that_are_missing_or_misspelt_are_told(void **state)
@@ -338,6 +343,8 @@ static void routers_are_read_line_by_line(void **state)
         /* the same with other blanks and line ends, which end a line all the same */
         {"router 0 node 0 router 1 \r\nrouter 1 node 1 router 2\t\r\nrouter 2 node 2\r\n", 3, 2, 1},
         {"\nrouter  0\tnode 0 router 1\n\nrouter 1 node 1\n\n", 2, 1, 1},
+        /* a router is not its own neighbour */
+        {"router 0 node 0 router 0 router 1\nrouter 1 node 1\n", 2, 1, 1},
         {"router 1 node 0\nrouter 0 node 1 router 1\n", 2, 1, 1},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
@@ -489,6 +496,8 @@ static void arbitrary_networks_are_files_beside_the_case(void **state)
     assert_int_equal(n.topology.dims[0], 2);
     assert_false(reference(f, "ours", "anynet", "", &n));
     refused(f, ERR_UNAVAILABLE, 0, "no file ours.txt beside it");
+    assert_false(reference(f, "ours_smaller", "anynet", "", &n));
+    refused(f, ERR_UNAVAILABLE, 0, "no file ours_smaller.txt beside it");
     assert_false(reference(f, "../ours_small", "anynet", "", &n));
     refused(f, ERR_DATA, 0, "without '/'");
     assert_false(reference(f, "bad", "anynet", "", &n));
