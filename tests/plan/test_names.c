@@ -1,6 +1,6 @@
 /* test_names.c - which file a name means, what kind of file it is, and what runs and machines are
  * called. */
-#include "scratch.h"
+#include "in_arena.h"
 
 #include <sys/stat.h>
 
@@ -10,33 +10,6 @@
 #include "plan/machine_changes.h"
 #include "plan/machine_file.h"
 #include "plan/setting.h"
-
-static struct arena *a;
-static struct err e;
-
-static int begin(void **state)
-{
-    a = arena_create();
-    err_clear(&e);
-    return open_scratch(state);
-}
-
-static int end(void **state)
-{
-    arena_destroy(a);
-    return close_scratch(state);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
-
-/* The error of the last call, which is then forgotten. */
-static void refused(enum err_kind kind, int line, const char *part)
-{
-    assert_int_equal(e.kind, kind);
-    assert_int_equal(e.line, line);
-    if (strstr(e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, e.text);
-    err_clear(&e);
-}
 
 /* ---- names of files ---- */
 

@@ -1,39 +1,12 @@
 /* test_values.c - settings and ranges one at a time: what each key takes, what is refused and in
  * which words. */
-#include "scratch.h"
+#include "in_arena.h"
 
 #include <math.h>
 
 #include "base/random.h"
 #include "plan/range.h"
 #include "plan/setting.h"
-
-static struct arena *a;
-static struct err e;
-
-static int begin(void **state)
-{
-    a = arena_create();
-    err_clear(&e);
-    return open_scratch(state);
-}
-
-static int end(void **state)
-{
-    arena_destroy(a);
-    return close_scratch(state);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
-
-/* The error of the last call, which is then forgotten. */
-static void refused(enum err_kind kind, int line, const char *part)
-{
-    assert_int_equal(e.kind, kind);
-    assert_int_equal(e.line, line);
-    if (strstr(e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, e.text);
-    err_clear(&e);
-}
 
 static struct node *tree(const char *text)
 {

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/refused.h"
 #include "../support/scratch.h"
 #include "base/text.h"
 #include "report/claims.h"
@@ -51,9 +52,7 @@ static int end(void **state)
 
 static void refused(struct fixture *f, enum err_kind kind, const char *part)
 {
-    assert_int_equal(f->e.kind, kind);
-    if (strstr(f->e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, f->e.text);
-    err_clear(&f->e);
+    is_refused(&f->e, kind, part);
 }
 
 static void put_file(struct fixture *f, const char *id, const char *text)

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "../support/made_run.h"
+#include "../support/refused.h"
 #include "../support/scratch.h"
 #include "base/random.h"
 #include "base/text.h"
@@ -55,9 +56,7 @@ static int end(void **state)
 
 static void refused(struct fixture *f, enum err_kind kind, const char *part)
 {
-    assert_int_equal(f->e.kind, kind);
-    if (strstr(f->e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, f->e.text);
-    err_clear(&f->e);
+    is_refused(&f->e, kind, part);
 }
 
 /* A run of `seconds` on a machine with that latency of a hop; its number in the database. */

@@ -12,23 +12,8 @@
 
 #include <cmocka.h>
 
-#include "base/arena.h"
+#include "../support/arena_fixture.h"
 #include "spec/field.h"
-
-static struct arena *arena;
-
-static int make_arena(void **state)
-{
-    (void)state;
-    arena = arena_create();
-    return 0;
-}
-static int drop_arena(void **state)
-{
-    (void)state;
-    arena_destroy(arena);
-    return 0;
-}
 
 /* Run `check` for each field, with the name of its full key. */
 static void on_fields(void (*check)(const struct field *f, const char *name))

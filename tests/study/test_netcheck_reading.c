@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../support/refused.h"
 #include "../support/scratch.h"
 #include "base/random.h"
 #include "base/text.h"
@@ -50,10 +51,7 @@ static int end(void **state)
 
 static void refused(struct fixture *f, enum err_kind kind, int line, const char *part)
 {
-    assert_int_equal(f->e.kind, kind);
-    assert_int_equal(f->e.line, line);
-    if (strstr(f->e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, f->e.text);
-    err_clear(&f->e);
+    is_refused_at(&f->e, kind, line, part);
 }
 
 static void put_file(struct fixture *f, const char *name, const char *text)
