@@ -262,6 +262,23 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
     return NULL;
 }
 
+/* Of several programs that close a database at the same moment none is the last one for SQLite,
+ * and its logs stay beside it. Whoever sees them opens and closes once more; while another program
+ * has the database open they stay, as they should. */
+static void remove_logs(const char *path)
+{
+    struct text log = {0};
+    text_add(&log, "%s-shm", path); /* there from the first use to the end of the last */
+    for (int trial = 0; trial < 4 && access(log.s, F_OK) == 0; trial++) {
+        sqlite3 *db = NULL;
+        usleep((useconds_t)(500 * trial));
+        if (sqlite3_open_v2(path, &db, SQLITE_OPEN_READWRITE, NULL) == SQLITE_OK)
+            sqlite3_exec(db, "PRAGMA schema_version", NULL, NULL, NULL);
+        sqlite3_close(db);
+    }
+    text_free(&log);
+}
+
 /* Statements first: SQLite refuses to close a database with open ones. A transaction that was
  * not committed is undone. */
 void store_close(struct store *s)
@@ -270,6 +287,7 @@ void store_close(struct store *s)
     store_forget(s);
     if (s->in_transaction) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     CHECK(sqlite3_close(s->db) == SQLITE_OK);
+    if (s->writable && !s->unpublished) remove_logs(s->path);
     free(s->path);
     free(s->remark);
     free(s);
