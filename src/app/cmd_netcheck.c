@@ -7,7 +7,6 @@
 
 #include "app/flag.h"
 #include "app/verb.h"
-#include "base/text.h"
 #include "study/netcheck_verdict.h"
 
 static const char doc[] =
@@ -23,20 +22,6 @@ static const char doc[] =
     "give a list of objects. Cases that a level cannot run are counted as skipped, with the "
     "reason. The exit status is 1 if a verdict is FAIL, and 65 if a file has an unknown form or "
     "none of its cases can be run.";
-
-/* One word, or the nearest one in the message. */
-static bool level_of(const char *word, enum network_level *level, struct err *e)
-{
-    const char *name[LEVELS];
-    for (int l = 0; l < LEVELS; l++) {
-        name[l] = netcheck_level_name((enum network_level)l);
-        if (strcmp(word, name[l]) == 0) *level = (enum network_level)l;
-        if (strcmp(word, name[l]) == 0) return true;
-    }
-    static const char all[] = "; known: loggp, link, packet, flit, auto";
-    return err_set(e, ERR_USAGE, "there is no level '%s'%s", word,
-                   text_hint(word, name, LEVELS, all).s);
-}
 
 /* Several files are told apart by their names. */
 static void print_one(const struct netcheck *n, const struct common *c, double within,
@@ -102,7 +87,7 @@ int cmd_netcheck(int argc, char **argv)
     err_clear(&e);
     enum network_level level = LEVEL_LOGGP; /* of --level */
     bool wanted[LEVELS] = {false}; /* only that one, where it is given */
-    bool ok = within_of(limit, &within, &e) && (!c.level || level_of(c.level, &level, &e));
+    bool ok = within_of(limit, &within, &e) && (!c.level || level_named("", c.level, &level, &e));
     /* NULL, not an array of true: without --level every level is wanted. */
     if (ok && c.level) wanted[level] = true;
     struct arena *a = arena_create();

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "spec/run_spec.h"
 
 /* argv keeps its NULL at the end. */
@@ -81,4 +82,22 @@ bool take_threads(int *argc, char **argv, int *threads, struct err *e)
                        "--threads: '%.40s' is neither 'auto' nor a number from 1 to 1024", text);
     *threads = (int)n;
     return true;
+}
+
+bool level_named(const char *option, const char *word, enum network_level *level, struct err *e)
+{
+    const char *name[LEVELS];
+    struct text all = {0};
+    for (int l = 0; l < LEVELS; l++) {
+        name[l] = network_level_name((enum network_level)l);
+        text_add(&all, "%s%s", l > 0 ? ", " : "; known: ", name[l]);
+    }
+    int found = 0;
+    while (found < LEVELS && strcmp(word, name[found]) != 0) found++;
+    if (found < LEVELS) *level = (enum network_level)found;
+    else
+        err_set(e, ERR_USAGE, "%sthere is no level '%.40s'%s", option, word,
+                text_hint(word, name, LEVELS, all.s).s);
+    text_free(&all);
+    return found < LEVELS;
 }

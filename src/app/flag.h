@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "base/err.h"
+#include "spec/machine_spec.h"
 
 /* take_flag: remove every `name` ("--keep-all") from argv[1..]; whether there was one. */
 bool take_flag(int *argc, char **argv, const char *name);
@@ -26,5 +27,9 @@ bool take_seconds(int *argc, char **argv, const char *name, double *seconds, str
 /* take_threads: --threads N|auto as run_order.threads; auto when it is not there. False with
  * ERR_USAGE. */
 bool take_threads(int *argc, char **argv, int *threads, struct err *e);
+
+/* level_named: the network level below LEVELS that `word` is, into *level. False with ERR_USAGE:
+ * the nearest, or all; `option` ("--level: ", "") stands before it. */
+bool level_named(const char *option, const char *word, enum network_level *level, struct err *e);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "app/flag.h"
 #include "base/sorted.h"
-#include "base/text.h"
 #include "base/units.h"
 #include "study/load.h"
 
@@ -171,19 +170,11 @@ bool load_options_take(int *argc, char **argv, struct load_options *o, struct ar
 
 bool load_options_levels(const char *text, struct load_options *o, struct arena *a, struct err *e)
 {
-    const char *word[LEVELS], *name[LEVELS];
+    const char *word[LEVELS];
     if (!text) return true;
     /* each level once or several times: curves of equal name are one curve */
-    for (int l = 0; l < LEVELS; l++) name[l] = network_level_name((enum network_level)l);
     if (!split("--level", text, word, &o->nlevel, LEVELS, a, e)) return false;
-    for (int i = 0; i < o->nlevel; i++) {
-        int l = 0;
-        while (l < LEVELS && strcmp(word[i], name[l]) != 0) l++;
-        static const char all[] = "; known: loggp, link, packet, flit, auto";
-        if (l == LEVELS)
-            return err_set(e, ERR_USAGE, "--level: there is no level '%.40s'%s", word[i],
-                           text_hint(word[i], name, LEVELS, all).s);
-        o->level[i] = (enum network_level)l;
-    }
+    for (int i = 0; i < o->nlevel; i++)
+        if (!level_named("--level: ", word[i], &o->level[i], e)) return false;
     return true;
 }

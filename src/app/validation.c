@@ -5,9 +5,9 @@
 #include "app/validation.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/sorted.h"
 #include "base/text.h"
 
 /* Cuts and wires follow from the topology by arithmetic: there is little to be wrong. */
@@ -128,12 +128,6 @@ bool validation_measure(const struct published *p, struct validated *o, struct a
     return true;
 }
 
-static int ascending(const void *x, const void *y)
-{
-    double a = *(const double *)x, b = *(const double *)y;
-    return (a > b) - (a < b);
-}
-
 /* The points of one use; `size` is scratch of n. Estimates (class E) are in no group: they would
  * judge themselves. */
 static struct validation_group group(const struct published *const *p, const struct validated *o,
@@ -153,7 +147,7 @@ static struct validation_group group(const struct published *const *p, const str
     }
     if (g.n == 0) return g;
     g.mean /= g.n;
-    qsort(size, (size_t)g.n, sizeof *size, ascending);
+    sort_numbers(size, (size_t)g.n);
     /* The mean of the two middle ones where their number is even. */
     g.median = (size[(g.n - 1) / 2] + size[g.n / 2]) / 2;
     return g;

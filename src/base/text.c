@@ -126,16 +126,23 @@ void text_add_bytes(struct text *t, const char *s, size_t n)
     t->s[t->length] = '\0';
 }
 
+char *text_put_integer(char *at, int64_t v)
+{
+    char digit[TEXT_INTEGER];
+    int n = 0;
+    /* Unsigned, since the least integer has no positive counterpart; the last digit comes first. */
+    uint64_t rest = v < 0 ? -(uint64_t)v : (uint64_t)v;
+    do digit[n++] = (char)('0' + rest % 10);
+    while (rest /= 10);
+    if (v < 0) *at++ = '-';
+    while (n > 0) *at++ = digit[--n];
+    return at;
+}
+
 void text_add_integer(struct text *t, int64_t v)
 {
-    char digit[20];
-    size_t at = sizeof digit;
-    /* Unsigned, since the least integer has no positive counterpart. */
-    uint64_t rest = v < 0 ? -(uint64_t)v : (uint64_t)v;
-    do digit[--at] = (char)('0' + rest % 10);
-    while (rest /= 10);
-    if (v < 0) digit[--at] = '-';
-    text_add_bytes(t, digit + at, sizeof digit - at);
+    char digits[TEXT_INTEGER];
+    text_add_bytes(t, digits, (size_t)(text_put_integer(digits, v) - digits));
 }
 
 /* An empty text may be used again. */

@@ -39,7 +39,10 @@ void text_add(struct text *t, const char *format, ...) __attribute__((format(pri
 /* text_add_bytes: append `n` bytes. */
 void text_add_bytes(struct text *t, const char *s, size_t n);
 
-/* text_add_integer: append `v` in decimal, in a tenth of printf's time. */
+/* text_put_integer: the decimal digits of `v`, with its sign, at `at`, without a NUL; returns where
+ * they end. In a tenth of printf's time. text_add_integer: append them. */
+enum { TEXT_INTEGER = 20 }; /* characters at most */
+char *text_put_integer(char *at, int64_t v);
 void text_add_integer(struct text *t, int64_t v);
 
 /* text_free: give the memory back and return to {0}. */

@@ -8,7 +8,6 @@
 #include "base/units.h"
 
 #include <ctype.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -382,17 +381,10 @@ bool units_parse(const char *text, enum unit unit, double *value, char *why, int
  * doubles is less. */
 static int whole_digits(double x, char digits[20], int *exponent)
 {
-    char s[20];
-    int n = 0;
-    uint64_t rest = (uint64_t)x;
-    /* By hand, last digit first: identities of runs consist of such numbers. */
-    do s[n++] = (char)('0' + rest % 10);
-    while (rest /= 10);
+    int n = (int)(text_put_integer(digits, (int64_t)x) - digits);
     *exponent = n - 1;
-    int zeros = 0;
-    while (s[zeros] == '0') zeros++;
-    for (int i = 0; i < n - zeros; i++) digits[i] = s[n - 1 - i];
-    return n - zeros;
+    while (digits[n - 1] == '0') n--;
+    return n;
 }
 
 /* fraction_digits: those of m where x = m / 10^k with the least k; 0: not found. Both m < 10^15 and

@@ -5,6 +5,7 @@
  * a part along H, unlike in aba.c: with Y = (H^T I H + s)^-1 (I H)^T, I^a = I - I H Y. */
 #include "dynamics/dynamics.h"
 #include "dynamics/integrate.h"
+#include "dynamics/spring.h"
 #include "dynamics/work_count.h"
 #include "linalg/dense.h"
 
@@ -107,8 +108,8 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         own.call++;
         own.flop += BODY_GYRO_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
         if (!body->has_spring) continue;
-        given[body->u_at] -= h * body->rate_stiffness * u[body->u_at];
-        resistance[body->u_at] = h * (body->damping + h * body->rate_stiffness);
+        spring_force(body, h, u + body->u_at, given + body->u_at);
+        resistance[body->u_at] = spring_resistance(body, h);
         own.flop += 3 + 3; /* less h k u; h (c + h k) */
     }
     /* Tip to base as in aba.c: a spring resists at its own joint and couples no bodies. */

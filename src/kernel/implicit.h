@@ -8,6 +8,7 @@
 #define KERNEL_IMPLICIT_H
 
 #include "dynamics/algebra.h"
+#include "dynamics/spring.h"
 #include "kernel/kernel.h"
 #include "model/model.h"
 
@@ -21,19 +22,6 @@ static inline bool steps_implicitly(const struct kernel_job *job)
 static inline real implicit_step(const struct kernel_job *job)
 {
     return steps_implicitly(job) ? (real)(job->spec->kernel.step_size / job->model->second) : 0;
-}
-
-/* spring_resistance: s of a body's joint; 0: its forces are explicit. */
-static inline real spring_resistance(const struct body *b, real h)
-{
-    return b->has_spring ? h * (b->damping + h * b->rate_stiffness) : 0;
-}
-
-/* spring_force: tau_0 for tau (d), to which body_spring has added the forces at the begin of the
- * step. */
-static inline void spring_force(const struct body *b, real h, const real *u, real *tau)
-{
-    if (b->has_spring && h > 0) tau[0] -= h * b->rate_stiffness * u[0];
 }
 
 #endif

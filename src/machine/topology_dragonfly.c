@@ -141,8 +141,8 @@ static int dragonfly_rate_dim(const struct topology *t, int link)
     return link < g->first_global ? 0 : 1; /* dim_bandwidth: local, global */
 }
 
-/* Groups. */
-static int dragonfly_parts(const struct topology *t, int64_t *size)
+/* Nodes of a router, routers of a group. */
+int topology_group_parts(const struct topology *t, int64_t *size)
 {
     *size = (int64_t)t->spec->dims[0] * t->spec->dims[1];
     return 1;
@@ -155,5 +155,5 @@ const struct topology_type topology_dragonfly = {
     .next = dragonfly_next,
     .ends = dragonfly_ends,
     .rate_dim = dragonfly_rate_dim,
-    .parts = dragonfly_parts,
+    .parts = topology_group_parts,
 };

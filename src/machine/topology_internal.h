@@ -30,8 +30,9 @@ struct topology_type {
 };
 
 /* topology_grid_parts: `parts` of families whose routers have coordinates: lines, planes and so on.
- */
+ * topology_group_parts: of those whose dims begin with nodes and routers: groups. */
 int topology_grid_parts(const struct topology *t, int64_t *size);
+int topology_group_parts(const struct topology *t, int64_t *size);
 
 /* Every family's own. */
 #define X(constant, word, stem, ndim, routers, traits)                                             \

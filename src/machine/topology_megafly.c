@@ -153,13 +153,6 @@ static int megafly_rate_dim(const struct topology *t, int link)
     return link < g->first_global ? 0 : 1;
 }
 
-/* Groups. */
-static int megafly_parts(const struct topology *t, int64_t *size)
-{
-    *size = (int64_t)t->spec->dims[0] * t->spec->dims[1];
-    return 1;
-}
-
 const struct topology_type topology_dragonfly_plus = {
     .name = "dragonfly-plus",
     .create = megafly_create,
@@ -168,5 +161,5 @@ const struct topology_type topology_dragonfly_plus = {
     .distance = megafly_distance,
     .ends = megafly_ends,
     .rate_dim = megafly_rate_dim,
-    .parts = megafly_parts,
+    .parts = topology_group_parts,
 };

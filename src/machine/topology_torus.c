@@ -218,7 +218,6 @@ static int64_t torus_bisection(const struct topology *t)
     return g->wraps ? 2 * cables : cables;
 }
 
-/* One set of functions for both: g->wraps is all the difference. */
 /* A block grows by one dimension at a time. */
 int topology_grid_parts(const struct topology *t, int64_t *size)
 {
@@ -227,6 +226,7 @@ int topology_grid_parts(const struct topology *t, int64_t *size)
     return t->spec->ndim;
 }
 
+/* One set of functions for both: g->wraps is all the difference. */
 const struct topology_type topology_torus = {
     .name = "torus",
     .create = torus_create,

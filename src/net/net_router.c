@@ -8,9 +8,6 @@
 #include "net/net_router_gather.h"
 #include "net/net_router_lane.h"
 
-/* Second look at a router at the same time. */
-enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
-
 /* An event that an earlier one overtook is still to come. */
 void router_post(struct routers *g, int r, sim_ps at)
 {
@@ -22,7 +19,7 @@ void router_post(struct routers *g, int r, sim_ps at)
         if (o->posted[i] == 0) place = &o->posted[i];
     }
     if (place) *place = at + 1;
-    const unsigned lane = at == sim_now(n->sim) ? LANE_AGAIN : NET_LANE_ARBITRATE;
+    const unsigned lane = at == sim_now(n->sim) ? ROUTER_LANE_AGAIN : NET_LANE_ARBITRATE;
     sim_at(n->sim, at, lane, (uint64_t)n->nresource + (uint64_t)r, g->look, g, (uint64_t)r);
 }
 

@@ -92,7 +92,7 @@ struct port {
     struct port *match, *wish, *pick;
 };
 
-enum { ROUTER_POSTED = 3 };
+enum { ROUTER_POSTED = 3, ROUTER_LANE_AGAIN = NET_LANE_ARBITRATE + 1 /* a second look at once */ };
 
 struct router {
     struct lane *busy;

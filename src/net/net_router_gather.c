@@ -15,7 +15,7 @@
 enum { MOST = 1 << 16 };
 
 /* Before what is looked at in an instant: what waited outside comes into its slot. */
-enum { LANE_ENTER = NET_LANE_ARBITRATE - 1, LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
+enum { LANE_ENTER = NET_LANE_ARBITRATE - 1 };
 
 /* ---- sets ---- */
 
@@ -139,7 +139,7 @@ static void post_gathered(struct routers *g, int r, sim_ps at)
     const bool later = at > sim_now(sim);
     if (s) gather_set_add(later ? &s->router : &g->gather->again, r);
     else if (later) sim_at(sim, at, LANE_ENTER, number, enter, g, number);
-    else sim_at(sim, at, LANE_AGAIN, number, alone_router, g, (uint64_t)r);
+    else sim_at(sim, at, ROUTER_LANE_AGAIN, number, alone_router, g, (uint64_t)r);
 }
 
 /* Sets of all slots take a bit for each node and router: not for the largest networks. */

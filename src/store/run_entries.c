@@ -21,21 +21,8 @@ const struct entry_view entry_view[ENTRY_VIEWS] = {
 
 /* ---- entries ---- */
 
-/* The digits of a 64-bit integer with its sign, and a comma. */
-enum { INTEGER_BYTES = 24 };
-
-static char *put_integer(char *at, int64_t value)
-{
-    char digit[INTEGER_BYTES];
-    int n = 0;
-    /* Unsigned, since the least integer has no positive counterpart. */
-    uint64_t rest = value < 0 ? -(uint64_t)value : (uint64_t)value;
-    do digit[n++] = (char)('0' + rest % 10);
-    while (rest /= 10);
-    if (value < 0) *at++ = '-';
-    while (n > 0) *at++ = digit[--n];
-    return at;
-}
+/* A number and what divides it from the next; "null" is shorter. */
+enum { INTEGER_BYTES = TEXT_INTEGER + 4 };
 
 /* The value of a column, or the word for one that is not known. */
 static char *put_column(char *at, const struct column *c, const void *row)
@@ -44,7 +31,7 @@ static char *put_column(char *at, const struct column *c, const void *row)
     column_read(c, row, &v);
     if (v.kind == VALUE_ABSENT) return memcpy(at, "null", 4), at + 4;
     CHECK(v.kind == VALUE_INT);
-    return put_integer(at, v.integer);
+    return text_put_integer(at, v.integer);
 }
 
 static void add_entry(const struct entry_view *e, const int64_t *key, const void *row,
@@ -55,7 +42,7 @@ static void add_entry(const struct entry_view *e, const int64_t *key, const void
     if (at[-1] == ']') *at++ = ',';
     for (int i = 0; i < e->nkey; i++) {
         *at++ = i == 0 ? '[' : ',';
-        at = put_integer(at, key[i]);
+        at = text_put_integer(at, key[i]);
     }
     for (int i = 0; i < e->columns->n; i++) {
         *at++ = ',';

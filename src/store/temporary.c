@@ -90,10 +90,7 @@ bool store_only(struct store *s, const char *run_ids, struct err *e)
     if (copy == NULL) return false;
     /* From here on the store is the copy; its file is untouched and no longer open. Statements that
      * were prepared for the file would go on asking it. */
-    for (int i = 0; i < STATEMENT_COUNT; i++) {
-        sqlite3_finalize(s->statement[i]);
-        s->statement[i] = NULL;
-    }
+    store_forget(s);
     sqlite3_close(s->db);
     s->db = copy;
     sqlite3_stmt *q = NULL;
