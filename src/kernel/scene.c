@@ -48,6 +48,7 @@ static struct scene *scene_make(const struct run_spec *spec, unsigned keep, stru
     if (s->state) {
         s->nbody = s->model->nbody;
         s->movable = omission_movable(s->model);
+        s->mergeable = omission_mergeable(spec->nrank, keep, s->nbody, s->movable);
         s->fixed = omission_scene(spec->nrank, keep, &s->model, &s->state, a);
         system_prepare(s->model);
         s->state->at_rest = omission_job(spec, keep, s->model, s->state).velocity;
@@ -78,7 +79,7 @@ static void make_room(struct program_cache *cache, int nbody)
 }
 
 /* A scene depends on the model's description, on what is kept, on whether anything moves, and on
- * how many fixed bodies were merged, which depends on P. Everything else of a spec may differ. */
+ * how many fixed bodies may be merged, which depends on P. Everything else of a spec may differ. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
                          struct err *e)
 {
@@ -86,7 +87,7 @@ struct scene *scene_take(struct program_cache *cache, const struct run_spec *spe
     for (int i = 0; i < cache->nscene && !(keep & KEEP_SCENES); i++) {
         struct scene *s = cache->scene[i];
         /* P may leave fewer bodies to merge than the cached scene has merged. */
-        if (s->fixed != omission_mergeable(spec->nrank, keep, s->nbody, s->movable)) continue;
+        if (s->mergeable != omission_mergeable(spec->nrank, keep, s->nbody, s->movable)) continue;
         /* What is at rest now may move after the first time step. */
         if (s->still != (spec->kernel.steps == 0)) continue;
         /* The whole description counts, field by field, so its bytes are compared. */

@@ -30,7 +30,8 @@ struct scene {
     unsigned keep;
     bool still;              /* made for one evaluation: what is at rest stays so */
     int nbody, movable;      /* bodies as described; those on joints that move */
-    int fixed;               /* the others, when they have become part of these; otherwise 0 */
+    int mergeable;           /* the others, where P lets them become part of these; otherwise 0 */
+    int fixed;               /* those that have; a loop may be in the way */
     long used;               /* when it was last asked for */
     struct serial_answer inverse, forward[FORWARD_METHODS]; /* in double precision */
     struct serial_answer planar_inverse, planar_forward;     /* the same in three components */

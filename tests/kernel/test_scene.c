@@ -69,6 +69,26 @@ static void runs_share_a_scene_where_they_may(void **state)
     scene_cache_destroy(NULL);
 }
 
+/* Whether bodies could merge for P counts, not whether they did: a loop whose two bodies would
+ * become one is in the way. */
+static void a_loop_in_the_way_of_merging_costs_no_scene(void **state)
+{
+    (void)state;
+    struct program_cache *cache = scene_cache_create();
+    struct run_spec spec = evaluation_spec("forward", 4, 1);
+    spec.model.generator = MODEL_RING;
+    spec.model.base = BASE_FLOATING;
+    spec.model.joint = JOINT_FIXED;
+    struct scene *ring = taken(cache, &spec, 0);
+    assert_int_equal(ring->mergeable, 3);
+    assert_int_equal(ring->fixed, 0);
+    assert_ptr_equal(taken(cache, &spec, 0), ring);
+    /* with more ranks than moving bodies none could */
+    spec.nrank = 2;
+    assert_ptr_not_equal(taken(cache, &spec, 0), ring);
+    scene_cache_destroy(cache);
+}
+
 /* A few dozen scenes of which the one used longest ago goes, as a list says: an answer that has
  * been asked for is only there in a scene that was kept. */
 static void the_scene_used_longest_ago_is_forgotten(void **state)
@@ -252,6 +272,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(runs_share_a_scene_where_they_may),
+        cmocka_unit_test(a_loop_in_the_way_of_merging_costs_no_scene),
         cmocka_unit_test(the_scene_used_longest_ago_is_forgotten),
         cmocka_unit_test(a_scene_that_cannot_be_built_leaves_the_others),
         cmocka_unit_test(serial_answers_are_computed_once_and_agree),
