@@ -174,6 +174,12 @@ static void choose_columns(struct making *m)
     }
 }
 
+/* A word that says of what only beside the name of its column. */
+static bool is_truth(const char *text)
+{
+    return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;
+}
+
 /* "t3e-300, link": words as they are, numbers with what they are. */
 static const char *curve_name(const struct making *m, int from, int to, int row)
 {
@@ -185,7 +191,7 @@ static const char *curve_name(const struct making *m, int from, int to, int row)
         if (text[0] == '\0' || m->one_value[i]) continue;
         text_add(&t, "%s", t.length > 0 ? ", " : "");
         /* "bodies n 64": a number alone would not say of what. */
-        if (c->number) text_add(&t, "%s ", c->title);
+        if (c->number || is_truth(text)) text_add(&t, "%s ", c->title);
         text_add(&t, "%s", text);
     }
     const char *name = arena_text(m->sheet->arena, t.s != NULL ? t.s : "");

@@ -47,6 +47,10 @@ static const char *const traits[] = {"name",        "kernel",    "formulation", 
                                      "base",        "model",     "joint",       "n",
                                      "P",           "scenario"};
 enum { TRAITS = sizeof traits / sizeof *traits };
+/* Those that a program without bodies has, too, but does not read. */
+static const char *const of_bodies[] = {"formulation", "solver", "part_solver", "operators",
+                                        "precision",   "base",   "model",       "joint"};
+enum { OF_BODIES = sizeof of_bodies / sizeof *of_bodies };
 
 /* The columns and settings that there are. */
 struct names {
@@ -218,7 +222,10 @@ static void write_query(const struct source *list, int n, struct text *sql)
     text_add(sql, "SELECT v.run_id");
     for (int i = 0; i < n; i++) {
         if (!list[i].setting) {
-            text_add(sql, ", %s.\"%s\", NULL, NULL", list[i].result ? "r" : "v", list[i].name);
+            const bool own = is_in(of_bodies, OF_BODIES, list[i].name);
+            text_add(sql, own ? ", iif(r.nu > 0, %s.\"%s\", NULL), NULL, NULL"
+                              : ", %s.\"%s\", NULL, NULL",
+                     list[i].result ? "r" : "v", list[i].name);
             continue;
         }
         text_add(sql, ", s%d.value, s%d.number, s%d.unit", i, i, i);
@@ -226,8 +233,8 @@ static void write_query(const struct source *list, int n, struct text *sql)
     text_add(sql, " FROM v_run v JOIN run r ON r.id = v.run_id");
     for (int i = 0; i < n; i++)
         if (list[i].setting)
-            text_add(sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i,
-                     i, i, ++param);
+            text_add(sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d AND "
+                          "s%d.value <> ''", i, i, i, ++param, i);
     text_add(sql, " ORDER BY v.run_id");
 }
 
@@ -317,17 +324,25 @@ static void find_numbers(struct plot_sheet *sheet)
     }
 }
 
+/* Two words of a key mostly say enough: link.bandwidth; of a person's own program its parameter
+ * alone. */
+static const char *end_of_key(const char *name)
+{
+    const char *last = strrchr(name, '.'), *word = last;
+    if (last == NULL) return name;
+    while (word > name && word[-1] != '.') word--;
+    return strncmp(word, "program.", strlen("program.")) == 0 ? last + 1 : word;
+}
+
 /* How each column is called on an axis and in a legend. */
 static void name_columns(struct plot_sheet *sheet, const struct source *list)
 {
     for (int i = 0; i < sheet->ncolumn; i++) {
-        const char *name = arena_text(sheet->arena, list[i].name), *dot = strrchr(name, '.');
-        /* Two words of a key mostly say enough: link.bandwidth. */
-        while (dot != NULL && dot > name && dot[-1] != '.') dot--;
+        const char *name = arena_text(sheet->arena, list[i].name);
         /* The unit of a setting comes with its rows. */
         sheet->column[i] = (struct plot_column){
             .key = name,
-            .title = looked_up(title, sizeof title / sizeof *title, dot != NULL ? dot : name),
+            .title = looked_up(title, sizeof title / sizeof *title, end_of_key(name)),
             .unit = list[i].setting ? UNIT_NONE : unit_of_name(name),
             .trait = list[i].setting || is_in(traits, TRAITS, name)};
     }

@@ -205,7 +205,8 @@ static void run_texts(struct identity *x, const struct run_spec *run, struct tex
     }
     if (run->program.hash[0] != '\0') {
         memset(plain.program.file, 0, sizeof plain.program.file);
-        text_add(&more, "%s%s\n", program_key, run->program.hash);
+        /* in the place of the path, so that the key has one line */
+        snprintf(plain.program.file, sizeof plain.program.file, "sha256 %s", run->program.hash);
     }
     /* What a program declares itself counts like any setting. */
     program_lines_print(run->program.parameters, &more);

@@ -177,6 +177,15 @@ answers_of() { sed -n '/^answers:/,$s/^  [A-Za-z-]*: \([0-9]\{3,\}\)$/\1/p' "$1/
     works mimdsim lab draw broadcast && stdout_is broadcast/picture.png
     [ -s broadcast/picture.svg ]
     works mimdsim query broadcast/picture.db "SELECT count(*) FROM run" --json && stdout_says 12
+    # each run is one row; what only programs with bodies read is not told
+    run ! grep -q ',2,[0-9]*$' broadcast/picture.csv
+    run ! grep -q -e repetitions -e pcr broadcast/picture.svg
+    rm -r broadcast
+    works mimdsim lab broadcast
+    solve_program broadcast
+    works mimdsim lab draw broadcast
+    grep -q 'tree true' broadcast/picture.svg
+    run ! grep -q 'program\.' broadcast/picture.svg
     fails_with 66 mimdsim lab draw nowhere
     fails_with 64 mimdsim lab draw a b
 }

@@ -378,6 +378,16 @@ static void legends_name_what_tells_curves_apart(void **state)
     assert_int_equal(d.p.nseries, 1);
     assert_string_equal(d.p.series[0], "");
     drop(&d);
+    /* a word alone, but a number or a truth with the name of its column */
+    static const char *const by[] = {"level", "tree", "k"},
+                      *const first[] = {"link", "tree true", "k 1"};
+    for (int i = 0; i < 3; i++) {
+        draw(&d, "n,tree,level,k,time\n8,true,link,1,2\n8,false,flit,2,3\n", "n", NULL, "time",
+             by[i]);
+        assert_int_equal(d.p.nseries, 2);
+        assert_string_equal(d.p.series[0], first[i]);
+        drop(&d);
+    }
 }
 
 static void a_curve_upon_another_is_told(void **state)

@@ -109,6 +109,7 @@ static void a_program_counts_by_its_content_and_its_parameters(void **state)
     run_identify(&other, arena);
     assert_string_equal(run.config_hash, other.config_hash);
     assert_int_equal(names(run.config_text, "program.n"), 1);
+    assert_int_equal(names(run.config_text, "program.file"), 1);
     /* The text tells all but the folder. */
     if (!run_from_text(&back, run.config_text, arena, why, sizeof why)) fail_msg("%s", why);
     assert_true(back.kernel.own);
