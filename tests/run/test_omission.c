@@ -220,7 +220,7 @@ static void held_against(int number, const struct run_spec *spec, const struct a
         fail_msg("scene %d: %s: other times (%s)", number, what, text);
 }
 
-/* How many scenes had each omission, and in how many of them it took work or time to put it back. */
+/* How many scenes had each omission, and in how many putting it back took work or time. */
 struct tally {
     unsigned keep;
     char what[48];
