@@ -234,11 +234,13 @@ static bool numerics(struct chapter *c)
     if (!table(
             c,
             /* The largest error beside the largest tolerance: a failed check shows in the last
-             * column. */
-            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, "
-            "max(n) AS largest_n, format('%.1e', max(relative_error)) AS largest_error, "
-            "format('%.1e', max(tolerance)) AS largest_tolerance, count(*) - sum(passed) AS failed "
-            "FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
+             * column. A program without bodies has no formulation and solver. */
+            "SELECT e.kernel, iif(r.nu > 0, e.formulation, '') AS formulation, iif(r.nu > 0, "
+            "e.solver, '') AS solver, iif(r.nu > 0, e.precision, '') AS precision, quantity, "
+            "reference, count(*) AS runs, max(e.n) AS largest_n, format('%.1e', "
+            "max(relative_error)) AS largest_error, format('%.1e', max(tolerance)) AS "
+            "largest_tolerance, count(*) - sum(passed) AS failed FROM v_errors e JOIN run r ON "
+            "r.id = e.run_id GROUP BY 1, 2, 3, 4, 5, 6",
             "No run is stored."))
         return false;
     page_paragraph(c->page,
@@ -261,10 +263,10 @@ static bool left_out_of_runs(struct chapter *c)
                  /* A line per kind, with how many runs it concerns. */
                  "SELECT 'failed runs' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT "
                  "status), '') AS which  FROM run WHERE status <> 'ok' UNION ALL SELECT 'serial "
-                 "composite-body code: O(n^3), not run', count(*),  iif(count(*) = 0, '', "
-                 "format('n from %d to %d', min(n), max(n))) FROM run r  WHERE status = 'ok' AND "
-                 "kernel = 'dynamics'  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = "
-                 "r.id AND b.name LIKE '%crba') UNION ALL SELECT 'contention, level ' || level, "
+                 "composite-body code: O(n^3), not run', count(*), format('n from %d to %d', "
+                 "min(n), max(n)) FROM run r  WHERE status = 'ok' AND kernel = 'dynamics'  AND NOT "
+                 "EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba') "
+                 "GROUP BY 1 UNION ALL SELECT 'contention, level ' || level, "
                  "count(*), group_concat(DISTINCT scenario) FROM run  WHERE level = 'loggp' GROUP "
                  "BY level UNION ALL SELECT 'packets and flits: messages hold whole links, level ' "
                  "|| level, count(*),  group_concat(DISTINCT scenario) FROM run WHERE level = "
