@@ -107,13 +107,15 @@ static void print_count(double x, int width, int digits)
     else printf(" %*.*f", width, digits, x);
 }
 
-/* One line of the table. Without a model there is no formulation. */
+/* One line of the table. Without a model there are no formulation and no bodies. */
 static void print_run(const struct run_spec *s, const struct run_estimate *r)
 {
     struct text level = choice_of(s, "machine.network.level"),
                 form = choice_of(s, "kernel.formulation");
-    printf("%-12.12s %-10s %-12s %-14s %8lld %8d", s->machine.name, s->kernel.name,
-           r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody, s->nrank);
+    printf("%-12.12s %-10s %-12s %-14s", s->machine.name, s->kernel.name, r->nu > 0 ? form.s : "-",
+           level.s);
+    print_count(r->nu > 0 ? (double)r->nbody : NAN, 8, 0);
+    printf(" %8d", s->nrank);
     print_count(r->messages, 12, 0);
     print_count(r->bytes / 1e6, 12, 3);
     print_count(r->flops / 1e6, 12, 3);
