@@ -126,8 +126,8 @@ static void print_sentences(const struct run_spec *spec, const struct why *w, FI
                 100 * share_of(w, most->time_ps));
     }
     fprintf(out,
-            "The critical path follows %lld messages over %d of %d ranks and ends on rank %d.\n",
-            (long long)w->messages, w->ranks, w->run.nrank,
+            "The critical path follows %lld message%s over %d of %d ranks and ends on rank %d.\n",
+            (long long)w->messages, w->messages == 1 ? "" : "s", w->ranks, w->run.nrank,
             w->run.npath > 0 ? w->run.path[w->run.npath - 1].rank : 0);
     why_slack_sentence(w, out);
     print_help(w, out);
