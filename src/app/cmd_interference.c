@@ -102,6 +102,14 @@ static const char traffic_sql[] =
     "total(l.sent_bytes) / nullif(total(l.messages), 0) FROM link_load l JOIN other o ON o.id = "
     "l.run_id WHERE l.from_router IS NOT NULL AND l.to_router IS NOT NULL AND o.makespan_ps > 0";
 
+/* As people read it, and back: the same bits on every host. */
+static double four_digits(double x)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.3e", x);
+    return strtod(text, NULL);
+}
+
 /* The run alone with that much traffic of strangers; false: it has none to be beside. */
 static bool background_of(struct request *r, const struct run_spec *alone, struct run_spec *run)
 {
@@ -113,8 +121,9 @@ static bool background_of(struct request *r, const struct run_spec *alone, struc
         t.load <= 0)
         return false;
     *run = *alone;
-    /* The links of a machine file are never busy all the time. */
-    run->machine.noise.background_load = t.load < MOST_LOAD ? t.load : MOST_LOAD;
+    /* The links of a machine file are never busy all the time. Four digits: the load is a mean over
+     * a run, and stands in the names of machines and figures. */
+    run->machine.noise.background_load = four_digits(t.load < MOST_LOAD ? t.load : MOST_LOAD);
     run->machine.noise.background_bytes = (int64_t)fmin(fmax(t.bytes, 1), MOST_BYTES);
     memset(run->job.beside, 0, sizeof run->job.beside);
     text_copy(run->job.beside, sizeof run->job.beside, "background");

@@ -24,7 +24,14 @@ static void print_saturation(const struct load_series *s, FILE *out)
     if (isfinite(s->saturation))
         fprintf(out, "saturation at %.4g (held at %.4g, not at %.4g; %d loads tried)\n",
                 s->saturation, s->low, s->high, s->probes);
-    else fprintf(out, "no saturation up to load 1 (%d loads tried)\n", s->probes);
+    else if (s->low >= 1)
+        fprintf(out, "no saturation up to load 1 (%d loads tried)\n", s->probes);
+    else {
+        /* Nothing above `low` could be told, and of 0 there is nothing to say. */
+        fprintf(out, "saturation not found: at load 1 the mean latency is not known well enough (");
+        if (s->low > 0) fprintf(out, "held at %.4g; ", s->low);
+        fprintf(out, "%d loads tried); more --messages may tell\n", s->probes);
+    }
 }
 
 /* As tables of columns: what the database has is what people read. */

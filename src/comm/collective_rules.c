@@ -61,7 +61,7 @@ static void take_word(const char **s, char word[WORD])
     while (isspace((unsigned char)**s)) (*s)++;
 }
 
-/* "2 KiB" up to "on" or the end: a size may be two words. They are put together with one blank and
+/* "2 KiB" up to "on", another "from" or the end: a size may be two words. They are put together with one blank and
  * read as every other quantity (base/units.h). */
 static bool take_size(const char **s, int64_t *bytes, char *why, int size)
 {
@@ -69,8 +69,8 @@ static bool take_size(const char **s, int64_t *bytes, char *why, int size)
     double value;
     for (const char *next = *s; *next;) {
         take_word(&next, word);
-        /* "on" begins the next condition and stays in the text. */
-        if (strcmp(word, "on") == 0) break;
+        /* These begin the next condition, which stays in the text. */
+        if (strcmp(word, "on") == 0 || strcmp(word, "from") == 0) break;
         /* One word more of the size, if there is room for it and a blank. */
         size_t used = strlen(quantity), more = strlen(word);
         if (used + more + 2 > sizeof quantity)

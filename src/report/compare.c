@@ -12,9 +12,10 @@
 #include "base/check.h"
 #include "report/how_sure.h"
 #include "report/report.h"
+#include "spec/field.h"
 #include "store/temporary.h"
 
-enum { MOST_KEYS = 400, MOST_POINT_KEYS = 16 };
+enum { MOST_KEYS = 400 }; /* settings: more than any version has */
 
 const char *const compare_part[COMPARE_PARTS] = {"computing", "sending and receiving", "waiting",
                                                  "contention"};
@@ -34,7 +35,7 @@ struct reading {
     int nkey;
     struct key *key; /* (MOST_KEYS) */
     int npoint_key;
-    const struct key *point_key[MOST_POINT_KEYS];
+    const struct key **point_key; /* (npoint_key) */
     bool named;      /* a point has the name of its machine */
     int capacity;
     struct err *e;
@@ -113,8 +114,9 @@ static bool is_machine(const char *key)
 /* What tells points apart: n and ranks first, then the others by name. */
 static void choose_point_keys(struct reading *r)
 {
+    r->point_key = TAKE(r->c->arena, r->nkey + 1, const struct key *);
     for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < r->nkey && r->npoint_key < MOST_POINT_KEYS; i++) {
+        for (int i = 0; i < r->nkey; i++) {
             const struct key *k = &r->key[i];
             const bool size = strcmp(k->name, "model.n") == 0 || strcmp(k->name, "ranks") == 0 ||
                               strcmp(k->name, "program.n") == 0;
@@ -150,7 +152,10 @@ static void list_differences(struct reading *r)
             continue;
         struct compare_difference *d = &c->difference[c->ndifference++];
         d->key = k->name;
-        for (int s = 0; s < c->nside; s++) d->value[s] = k->value[s] != NULL ? k->value[s] : "-";
+        const struct field_table *table;
+        const struct field *f = field_find_full(k->name, &table);
+        for (int s = 0; s < c->nside; s++)
+            d->value[s] = k->value[s] != NULL ? field_word(f, k->value[s]) : "-";
     }
 }
 
@@ -231,19 +236,21 @@ static bool read_runs(struct reading *r, struct err *e)
 {
     struct text sql = {0};
     struct compare *c = r->c;
+    const char **param = TAKE(c->arena, r->npoint_key + 1, const char *);
     bool ok = true;
     text_add(&sql, "SELECT v.run_id, v.name, v.makespan_s, v.compute_share, v.overhead_share,"
                    " v.wait_share, v.contention_share");
-    for (int i = 0; i < r->npoint_key; i++) text_add(&sql, ", s%d.value, s%d.number", i, i);
-    /* v_run has runs that ended well alone, with their names. */
-    text_add(&sql, " FROM v_run v");
-    /* Keys are bound: they are texts of a database. */
+    /* Keys are bound: they are texts of a database. Each is looked up for itself: SQLite joins at
+     * most 64 tables, and any number of settings may vary. */
+    static const char *const part[] = {"value", "number"};
     for (int i = 0; i < r->npoint_key; i++)
-        text_add(&sql, " LEFT JOIN v_setting s%d ON s%d.run_id = v.run_id AND s%d.key = ?%d", i, i,
-                 i, i + 2);
-    text_add(&sql, " WHERE v.run_id IN (SELECT value FROM json_each(?1)) ORDER BY v.run_id");
+        for (int k = 0; k < 2; k++)
+            text_add(&sql, ", (SELECT %s FROM v_setting WHERE run_id = v.run_id AND key = ?%d)",
+                     part[k], i + 2);
+    /* v_run has runs that ended well alone, with their names. */
+    text_add(&sql, " FROM v_run v WHERE v.run_id IN (SELECT value FROM json_each(?1)) ORDER BY v.run_id");
     for (r->side = 0; r->side < c->nside && ok; r->side++) {
-        const char *param[MOST_POINT_KEYS + 1] = {c->side[r->side].run_ids};
+        param[0] = c->side[r->side].run_ids;
         for (int i = 0; i < r->npoint_key; i++) param[i + 1] = r->point_key[i]->name;
         ok = store_query(c->side[r->side].store, sql.s, r->npoint_key + 1, param, NULL, take_run, r,
                          e);

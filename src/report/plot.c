@@ -283,6 +283,9 @@ static void tell(const struct plot *p, struct text *told)
     if (p->axes.nby > 0) text_add(told, "; curves by ");
     for (int i = 0; i < p->axes.nby; i++)
         text_add(told, "%s%s", i > 0 ? ", " : "", s->column[p->axes.by[i]].title);
+    if (s->nleft > 0)
+        text_add(told, "; not looked at: %d settings more in which runs differ (%s, ...)", s->nleft,
+                 s->left);
     struct text bands = {0};
     say_bands(&p->points, &bands);
     if (bands.length > 0) text_add(told, "; %s", bands.s);

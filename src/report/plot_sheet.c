@@ -177,38 +177,40 @@ static bool resolve(const struct names *n, const char *key, struct source *out, 
 
 /* ---- runs ---- */
 
-/* A list of sources, each once; -1: no room. */
-static int add_source(struct source *list, int n, struct source one)
+/* A list of sources, each once. What there is no room for is counted, and its first told. */
+static int add_source(struct plot_sheet *sheet, struct source *list, int n, struct source one)
 {
     for (int i = 0; i < n; i++)
         if (strcmp(list[i].name, one.name) == 0) return n;
     if (n < MOST_COLUMNS) list[n++] = one;
+    else if (sheet->nleft++ == 0) sheet->left = arena_text(sheet->arena, one.name);
     return n;
 }
 
 /* What was asked for, then everything in which runs may differ: machines are told apart by their
  * names, n and ranks by their columns. */
-static int choose(const struct names *n, int nkey, const char *const *key, struct source *list,
-                  struct err *e)
+static int choose(struct plot_sheet *sheet, const struct names *n, int nkey,
+                  const char *const *key, struct source *list, struct err *e)
 {
     int count = 0;
     for (int i = 0; i < nkey; i++) {
         struct source one;
         if (!resolve(n, key[i], &one, e)) return -1;
-        count = add_source(list, count, one);
+        count = add_source(sheet, list, count, one);
     }
     /* Behind what was asked for: all in which runs may differ, so that nothing is mixed unseen. */
     for (int i = 0; i < TRAITS; i++)
-        count = add_source(list, count, (struct source){.name = traits[i]});
+        count = add_source(sheet, list, count, (struct source){.name = traits[i]});
     /* Runs with one configuration are repetitions of each other. */
-    count = add_source(list, count, (struct source){.name = "config_hash"});
+    count = add_source(sheet, list, count, (struct source){.name = "config_hash"});
     for (int i = 0; i < n->nvaried; i++) {
         const char *k = n->setting[i], *dot = strchr(k, '.');
         bool told = strncmp(k, "machine.", 8) == 0 || strcmp(k, "model.n") == 0 ||
                     strcmp(k, "ranks") == 0 || strcmp(k, "seed") == 0 ||
                     strcmp(k, "kernel.name") == 0 || strcmp(k, "model.generator") == 0 ||
                     (dot != NULL && is_in(traits, TRAITS, dot + 1));
-        if (!told) count = add_source(list, count, (struct source){.name = k, .setting = true});
+        if (!told)
+            count = add_source(sheet, list, count, (struct source){.name = k, .setting = true});
     }
     return count;
 }
@@ -359,7 +361,7 @@ bool plot_sheet_runs(struct plot_sheet *sheet, struct store *s, int n, const cha
     struct text sql = {0};
     struct reading r = {.sheet = sheet};
     names->arena = sheet->arena;
-    int nparam = 0, count = list_names(names, s, e) ? choose(names, n, key, list, e) : -1;
+    int nparam = 0, count = list_names(names, s, e) ? choose(sheet, names, n, key, list, e) : -1;
     if (count >= 0) {
         sheet->ncolumn = count;
         sheet->column = TAKE(sheet->arena, count, struct plot_column);

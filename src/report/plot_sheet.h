@@ -29,6 +29,8 @@ struct plot_sheet {
     struct plot_column *column; /* (ncolumn) */
     struct plot_cell *cell;     /* (nrow x ncolumn) */
     int64_t *run_id;            /* (nrow) 0: not known */
+    int nleft;                  /* settings that differ between runs and had no room, .. */
+    const char *left;           /* .. the first of them */
 };
 
 /* plot_sheet_runs: every run that ended well, with the columns that `key` (n) names and with those

@@ -257,6 +257,12 @@ bool field_is_wordless_zero(const struct field *f, const void *base, const char 
     return is_zero(f, base) && strcmp(text, f->zero) != 0;
 }
 
+const char *field_word(const struct field *f, const char *value)
+{
+    const char *word = f == NULL ? NULL : f->zero != NULL ? f->zero : f->instead;
+    return word == NULL || strtod(value, NULL) != 0 ? value : word;
+}
+
 /* The inverse of field_set, kind by kind. The identity of a run is made of these texts. */
 void field_print(const struct field *f, const void *base, struct text *out)
 {

@@ -52,6 +52,8 @@ struct field {
     const char *doc;           /* one line for the manual */
     const char *zero; /* FIELD_REAL: the word for 0 where that is no small number: "unlimited",
                          which field_set takes as well as 0; NULL: 0 is a number */
+    const char *instead; /* FIELD_REAL: what people read where a 0 stands for another setting, as
+                            files and databases write it: "as a link"; NULL: it stands for none */
     field_idle_fn *idle;       /* NULL: acts in every run */
     bool (*valid)(const char *text, char *why,
                   int size);   /* FIELD_TEXT: whether it may be this, else a clause why not;
@@ -109,6 +111,10 @@ bool field_number(const struct field *f, const void *base, double *number);
  * that has a word. */
 void field_show(const struct field *f, const void *base, struct text *out);
 bool field_is_wordless_zero(const struct field *f, const void *base, const char *text);
+
+/* field_word: `value`, a text of field f (NULL: unknown) in a file or a database, for people: a 0 that
+ * has a word, or stands for another setting, is that word. */
+const char *field_word(const struct field *f, const char *value);
 
 /* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with
  * the rows that are for people only. */

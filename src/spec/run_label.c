@@ -86,14 +86,6 @@ static void add_value(const char *value, struct text *out)
         else if (*s != '[' && *s != ']' && *s != ' ') text_add_bytes(out, s, 1);
 }
 
-/* "unlimited" for a rate of 0 that means so. */
-static const char *word_of(bool known, const char *key, const char *value)
-{
-    const struct field *f = known ? &machine_table.field[field_find(&machine_table, key)] : NULL;
-    if (f == NULL || f->zero == NULL || strtod(value, NULL) != 0) return value;
-    return f->zero;
-}
-
 void run_label_changed(const char *name, const char *changes, struct text *out)
 {
     struct text key = {0}, value = {0};
@@ -102,9 +94,10 @@ void run_label_changed(const char *name, const char *changes, struct text *out)
     for (const char *s = changes; s != NULL && take_change(&s, &key, &value); n++) {
         if (n >= MOST_CHANGES) continue;
         /* A key that this version does not know any more is told in full. */
-        const bool known = field_find(&machine_table, key.s) >= 0;
-        text_add(out, ", %s ", known ? field_short_key(&machine_table, key.s) : key.s);
-        add_value(word_of(known, key.s, value.s), out);
+        const int row = field_find(&machine_table, key.s);
+        const struct field *f = row >= 0 ? &machine_table.field[row] : NULL;
+        text_add(out, ", %s ", f ? field_short_key(&machine_table, key.s) : key.s);
+        add_value(field_word(f, value.s), out);
     }
     if (n > MOST_CHANGES) {
         char hex[65];

@@ -36,14 +36,15 @@ bool load_saturate(struct load_series *s, load_probe_fn *probe, void *context, s
     int side = 0;
     s->probes = 0;
     if (!ask(s, high, probe, context, &side, e)) return false;
-    if (side < 0 && high < 1) {
-        low = high;
+    /* What holds there is asked at full load, and so is what cannot be told: no bracket ends there. */
+    if (side <= 0 && high < 1) {
+        low = side < 0 ? high : 0;
         high = 1;
         if (!ask(s, high, probe, context, &side, e)) return false;
     }
-    s->low = side > 0 ? low : high;
+    s->low = side < 0 ? high : low;
     s->high = s->saturation = NAN;
-    /* at full load the network still holds, or nobody can tell */
+    /* At full load the network still holds, or nobody can tell: `low` is then below 1. */
     if (side <= 0) return true;
     while (high - low > finest * high) {
         double middle = (low + high) / 2;

@@ -51,7 +51,11 @@ load helper
     printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network: {link: {bandwidth: unlimited}}' 'title: no limit' >free.yaml
     works mimdsim compare t3e-300 free.yaml --set n=8,16 --set level=loggp -o c.db --quiet
     stdout_says 'machine.network.link.bandwidth       480 MB/s                       unlimited'
+    # a rate that a file does not state is that of a link
+    printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network: {injection: {bandwidth: 0 B/s}}' >own.yaml
     [[ $output != *' 0 B/s'* ]] || { show; return 1; }
+    works mimdsim compare t3e-300 own.yaml --set n=8 --set level=loggp -o own.db --quiet
+    stdout_says 'machine.network.injection.bandwidth  340 MB/s                       as a link'
     works mimdsim compare t3e-300 free.yaml --set n=8,16 --set level=loggp -o c.db --json
     json_is '$.differences[#-1].values[1]' unlimited
     sql_is c.db "SELECT count(*) FROM v_setting WHERE key = 'machine.network.link.bandwidth' AND value = 'unlimited' AND number IS NULL" 2

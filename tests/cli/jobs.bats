@@ -258,6 +258,9 @@ refused() {
                       AND value ->> 'error_percent' IS NOT NULL" >told
     [ "$(cat told)" = 6 ]
     [ -s figures/interference.png ] && [ -s figures/interference.svg ]
+    # loads stand in names, with no more digits than people read
+    grep -q 'background.load [0-9.]* %' figures/interference.provenance
+    run ! grep -qE '[0-9][.][0-9]{4}' figures/interference.provenance
     [ "$(tail -n +2 figures/interference.csv | wc -l)" -eq 24 ]
     # nothing is run twice, and other seeds of the same rows agree
     works mimdsim interference s.yaml -o s.db --quiet

@@ -100,6 +100,22 @@ every_what_if() { (cd "$MIMDSIM_DATA/machines" && ls what-if-*.yaml) | sed 's/\.
     stdout_says "3 of 128 routers and 18 of 384 cables do not work"
 }
 
+@test "check builds the networks of machines and scenarios, and names the line of what is not there" {
+    printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network:' '  failed:' '    links: [[0, 9]]' >m.yaml
+    fails_with 78 mimdsim check m.yaml
+    stderr_says "m.yaml:5: network.failed.links: entry 0, no further cable joins routers 0 and 9; 0 is joined to 1, 7, 8, 24, 32, 96"
+    printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network: {routing: nca}' >r.yaml
+    fails_with 78 mimdsim check r.yaml
+    stderr_says "r.yaml:3: network.routing 'nca' is not for topology 'torus'"
+    # a point of a sweep is enough
+    printf '%s\n' 'schema_version: 1' 'question: none?' 'kernel: barrier' 'ranks: 4' 'machine: t3e-300' \
+        'sweep: {machine.network.failed.routers: ["[]", "[3]", "[128]"]}' >s.yaml
+    fails_with 78 mimdsim check s.yaml
+    stderr_says "s.yaml: network.failed.routers: there is no router 128; expected 0 to 127"
+    sed -i 's/128/127/' s.yaml && sed -i 's/0, 9/0, 8/' m.yaml
+    works mimdsim check s.yaml m.yaml
+}
+
 @test "ranks are placed beside failed routers, as long as there is room" {
     works mimdsim run allreduce-algorithms --machine t3e-300 --set ranks=120 --set kernel.message='1 KiB' \
         --set kernel.algorithm=ring --set 'machine.network.failed.routers=[0, 5, 6]' --quiet

@@ -63,6 +63,8 @@ static void separators_blanks_and_the_order_of_conditions_do_not_matter(void **s
         ";;, ;allreduce ring from 64 KiB on 16 ranks,;\n",
         "allreduce ring\nfrom 64 KiB\non 16 ranks",
         "allreduce ring on 3 from 64 KiB on 16", /* the later one holds */
+        "allreduce ring from 1 KiB from 64 KiB on 16",
+        "allreduce ring from 1 KiB on 16 from 64 KiB",
     };
     for (size_t k = 0; k < sizeof same / sizeof *same; k++) {
         read_rules(same[k]);

@@ -239,6 +239,60 @@ static void sides_are_told_by_the_interval(void **state)
     assert_int_equal(load_side(&p, 100), 1);
 }
 
+/* A made network: what it answers at each load is known. */
+struct made {
+    double limit;        /* saturated above it, .. */
+    double unsure, sure; /* .. and nobody can tell from one of these loads up to the other */
+    double asked[64];
+    int n;
+};
+
+static bool answer_made(void *context, double offered, struct load_point *p, struct err *e)
+{
+    struct made *m = context;
+    (void)e;
+    m->asked[m->n++] = offered;
+    *p = (struct load_point){.status = LOAD_OK, .mean_ps = offered > m->limit ? 400 : 200};
+    if (offered >= m->unsure && offered < m->sure) p->mean_ps = 301, p->half_ps = 50;
+    return true;
+}
+
+/* limit, first load that cannot be told, bound of the routes; what comes of it. */
+static void what_cannot_be_told_is_not_taken_for_an_answer(void **state)
+{
+    (void)state;
+    static const struct {
+        double limit, unsure, bound, saturation, low, high;
+    } row[] = {
+        {0.37, 9, NAN, 0.37, 0.365, 0.375}, /* all is known */
+        {2, 9, 0.5, NAN, 1, NAN},           /* holds at full load */
+        {2, 1, 0.5, NAN, 0.525, NAN},       /* holds above its bound, not told at full load */
+        {2, 0.5, 0.5, NAN, 0, NAN},         /* nothing is known, not even at the bound */
+        {2, 0.5, NAN, NAN, 0, NAN},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        struct made m = {.limit = row[i].limit, .unsure = row[i].unsure, .sure = 10};
+        struct load_series s = {.empty_ps = 100, .bound = row[i].bound};
+        struct err e;
+        err_clear(&e);
+        assert_true(load_saturate(&s, answer_made, &m, &e));
+        assert_int_equal(s.probes, m.n);
+        if (isnan(row[i].saturation)) {
+            assert_true(isnan(s.saturation) && isnan(s.high));
+            if (fabs(s.low - row[i].low) > 1e-9) fail_msg("row %zu: held at %g", i, s.low);
+            continue;
+        }
+        assert_true(fabs(s.saturation - row[i].saturation) < 0.005 && s.low < row[i].saturation &&
+                    s.high > row[i].saturation && s.high - s.low <= 0.01 * s.high);
+    }
+    /* Not told at the bound, but saturated at full load: the bracket ends at full load. */
+    struct made m = {.limit = 0.5, .unsure = 0.52, .sure = 0.53};
+    struct load_series s = {.empty_ps = 100, .bound = 0.5};
+    struct err e;
+    err_clear(&e);
+    assert_true(load_saturate(&s, answer_made, &m, &e) && fabs(s.saturation - 0.5) < 0.01);
+}
+
 static void the_same_question_has_the_same_answer(void **state)
 {
     (void)state;
@@ -330,6 +384,7 @@ int main(void)
         cmocka_unit_test(deadlocks_are_points),
         cmocka_unit_test(without_contention_the_source_is_the_limit),
         cmocka_unit_test(sides_are_told_by_the_interval),
+        cmocka_unit_test(what_cannot_be_told_is_not_taken_for_an_answer),
         cmocka_unit_test(the_same_question_has_the_same_answer),
         cmocka_unit_test(what_cannot_be_run_is_refused),
         cmocka_unit_test(recorded_runs_are_repeated_at_any_speed),
