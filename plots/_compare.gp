@@ -21,7 +21,7 @@ bar_high = 17.0; group_high = bar_high*sides + 24
 lines_high = lines ? 330.0 : 0
 bars_high = shown*group_high + 60
 upper = 60.0
-high = upper + lines_high + 34 + bars_high + 30
+high = upper + lines_high + 34 + bars_high + 30 + foot_more(provenance, wide)
 at_y(px) = 1.0 - px/high
 left = 0.03 + 0.0078*(longest > 44 ? 44 : longest)
 left = left < 0.1 ? 0.1 : left

@@ -24,7 +24,7 @@ panel_wide = left_px + nx*cell_wide + 112
 panel_high = ny*cell_high + 70 + (panels > 1 ? 22 : 0)
 wide = columns*panel_wide < 640 ? 640.0 : columns*panel_wide
 upper = 78.0 + (strlen(bands) > 0 ? 18 : 0)
-high = upper + rows*panel_high + 30
+high = upper + rows*panel_high + 30 + foot_more(provenance, wide)
 shift = (wide - columns*panel_wide)/2
 at_x(px) = (px + shift)/wide; at_y(px) = 1.0 - px/high
 

@@ -27,7 +27,7 @@ legend_rows = legend ? ceil(1.0*curves/legend_columns) : 0
 wide = columns == 1 ? 800.0 : 1100.0
 upper = 56 + (strlen(bands) > 0 ? 18 : 0) + 20*legend_rows + (panels > 1 ? 26 : 8)
 panel_high = columns == 1 ? 440.0 : 320.0
-high = upper + rows*panel_high + 26
+high = upper + rows*panel_high + 26 + foot_more(provenance, wide)
 at_y(px) = 1.0 - px/high
 # a little room beyond the first and the last point
 pad_low(v, log) = log > 0 ? v/1.12 : v

@@ -21,7 +21,7 @@ panel_wide = left_px + nx*cell_wide + 30
 panel_high = ny*cell_high + 84 + (panels > 1 ? 22 : 0)
 wide = columns*panel_wide + 90 < 640 ? 640.0 : columns*panel_wide + 90
 upper = 76.0
-high = upper + rows*panel_high + 30
+high = upper + rows*panel_high + 30 + foot_more(provenance, wide)
 at_x(px) = px/wide; at_y(px) = 1.0 - px/high
 shift = (wide - 90 - columns*panel_wide)/2
 

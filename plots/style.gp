@@ -32,6 +32,8 @@ further(s, wide, more) = strlen(s) <= room(wide) || more == 0 ? 0 : \
 foot(s, wide) = on(s, wide, 3)
 foot_lift(s, wide) = 13*further(s, wide, 3)
 foot_high(s, wide) = 9 + foot_lift(s, wide)
+# what a foot of more than two lines needs beyond the room that every figure leaves for one
+foot_more(s, wide) = foot_lift(s, wide) > 13 ? foot_lift(s, wide) - 13 : 0
 
 # A PNG has twice the pixels of the SVG, and its fonts, lines, symbols and dashes are scaled so that both look alike.
 png_font = "DejaVu Sans,19"; svg_font = "DejaVu Sans,13"

@@ -19,7 +19,8 @@
 /* The text before \v stands above the options in --help, the rest below them (argp). */
 static const char doc[] =
     "Validate scenario, machine, robot (.urdf) and reference vector (.json) files without running "
-    "anything (networks are built, and models); and databases, whose rows must not contradict each other.\n\n"
+    "anything (networks are built, and models); and databases, whose rows must not contradict each "
+    "other.\n\n"
     "Example: mimdsim check scenarios/speedup-t3e.yaml machines/t3e-300.yaml\n"
     "         mimdsim check mimdsim.db --again 5\n"
     "\vAll files are checked; the exit status is that of the first invalid one. A warning on "
@@ -189,9 +190,8 @@ static bool check_file(const struct common *c, const char *file, const struct au
     }
     const bool model = model_file_is(file);
     /* Models are built, scenarios and machines read: nothing is run in either case. */
-    const bool fine =
-        model ? model_file_check(file, c->quiet ? NULL : stderr, e)
-              : plan_check_file(file, &o, e) && network_file_check(file, &o, e);
+    const bool fine = model ? model_file_check(file, c->quiet ? NULL : stderr, e)
+                            : plan_check_file(file, &o, e) && network_file_check(file, &o, e);
     if (fine && !c->quiet && !c->json) printf("%s: ok\n", file);
     if (fine && !c->quiet && !model) tell_steps_down(file);
     return fine;

@@ -61,8 +61,8 @@ static void take_word(const char **s, char word[WORD])
     while (isspace((unsigned char)**s)) (*s)++;
 }
 
-/* "2 KiB" up to "on", another "from" or the end: a size may be two words. They are put together with one blank and
- * read as every other quantity (base/units.h). */
+/* "2 KiB" up to "on", another "from" or the end: a size may be two words. They are put together
+ * with one blank and read as every other quantity (base/units.h). */
 static bool take_size(const char **s, int64_t *bytes, char *why, int size)
 {
     char quantity[WORD] = "", word[WORD];

@@ -248,7 +248,8 @@ static bool read_runs(struct reading *r, struct err *e)
             text_add(&sql, ", (SELECT %s FROM v_setting WHERE run_id = v.run_id AND key = ?%d)",
                      part[k], i + 2);
     /* v_run has runs that ended well alone, with their names. */
-    text_add(&sql, " FROM v_run v WHERE v.run_id IN (SELECT value FROM json_each(?1)) ORDER BY v.run_id");
+    text_add(&sql, " FROM v_run v WHERE v.run_id IN (SELECT value FROM json_each(?1))"
+                   " ORDER BY v.run_id");
     for (r->side = 0; r->side < c->nside && ok; r->side++) {
         param[0] = c->side[r->side].run_ids;
         for (int i = 0; i < r->npoint_key; i++) param[i + 1] = r->point_key[i]->name;

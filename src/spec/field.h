@@ -112,8 +112,8 @@ bool field_number(const struct field *f, const void *base, double *number);
 void field_show(const struct field *f, const void *base, struct text *out);
 bool field_is_wordless_zero(const struct field *f, const void *base, const char *text);
 
-/* field_word: `value`, a text of field f (NULL: unknown) in a file or a database, for people: a 0 that
- * has a word, or stands for another setting, is that word. */
+/* field_word: `value`, a text of field f (NULL: unknown) in a file or a database, for people: a 0
+ * that has a word, or stands for another setting, is that word. */
 const char *field_word(const struct field *f, const char *value);
 
 /* fields_print: "prefix.key = value" lines of one struct, in table order, appended; `labels`: with

@@ -74,8 +74,8 @@ int load_side(const struct load_point *p, double empty_ps);
 
 /* load_saturate: look for saturation between 0 and 1 into the members of *s, to 1 % of itself or
  * to a load that cannot be told. Where none is found, s->low is 1 if the network holds at full
- * load, and less if that cannot be told (0: nor of any other load that was tried). `probe` measures a load, or knows it already. Returns false where
- * `probe` did. */
+ * load, and less if that cannot be told (0: nor of any other load that was tried). `probe` measures
+ * a load, or knows it already. Returns false where `probe` did. */
 typedef bool load_probe_fn(void *context, double offered, struct load_point *p, struct err *e);
 bool load_saturate(struct load_series *s, load_probe_fn *probe, void *context, struct err *e);
 

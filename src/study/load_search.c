@@ -36,7 +36,8 @@ bool load_saturate(struct load_series *s, load_probe_fn *probe, void *context, s
     int side = 0;
     s->probes = 0;
     if (!ask(s, high, probe, context, &side, e)) return false;
-    /* What holds there is asked at full load, and so is what cannot be told: no bracket ends there. */
+    /* What holds there is asked at full load, and so is what cannot be told: no bracket ends there.
+     */
     if (side <= 0 && high < 1) {
         low = side < 0 ? high : 0;
         high = 1;
