@@ -198,6 +198,10 @@ void net_foresee(struct net *n, net_early_fn *early)
     if (n->type == &net_link) net_link_foresee(n);
 }
 
+/* Arrivals are known ahead; but who follows a rule sees, when a message is sent, what is on the
+ * links by then. */
+bool net_defers(const struct net *n) { return n->type == &net_link && !n->routing; }
+
 struct net *net_share(const struct net *n, void *context, struct arena *a)
 {
     CHECK(n->type == &net_loggp && n->port_private && !n->path);

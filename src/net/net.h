@@ -105,6 +105,10 @@ void net_foresee(struct net *n, net_early_fn *early);
  * with fewer events. Returns whether this level does it. Call it before any message is sent. */
 bool net_gather(struct net *n);
 
+/* net_defers: whether it acts on no result when what the receiver of a message does is worked out
+ * later on the host, as long as no event at its arrival or after it has been dispatched. */
+bool net_defers(const struct net *n);
+
 /* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL:
  * do not. Call it before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);

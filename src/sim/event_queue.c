@@ -167,13 +167,19 @@ static inline bool wheel_first(const struct event_queue *q, int *level, int *slo
     return false;
 }
 
-/* The present moves to the first window of a bucket; no event lies between. The bits above the
- * bucket's level stay, those below become 0. */
-static inline void move_to(struct event_queue *q, int level, int slot)
+/* The first window of a bucket: the bits above the bucket's level are the present's, those below
+ * are 0. */
+static inline uint64_t window_at(const struct event_queue *q, int level, int slot)
 {
     const int shift = level * WHEEL_BITS;
     const uint64_t above = ~UINT64_C(0) << (shift + WHEEL_BITS);
-    q->window = (q->window & above) | (uint64_t)slot << shift;
+    return (q->window & above) | (uint64_t)slot << shift;
+}
+
+/* The present moves there; no event lies between. */
+static inline void move_to(struct event_queue *q, int level, int slot)
+{
+    q->window = window_at(q, level, slot);
 }
 _Static_assert(WHEEL_LEVELS * WHEEL_BITS < 64, "the shift by a level and its bits is defined");
 
@@ -282,18 +288,20 @@ void event_queue_push(struct event_queue *q, const struct event *e)
     else wheel_add(q, e);
 }
 
-/* Nothing is left of this window: the next one that has events. Each round empties one bucket; an
- * event passes at most WHEEL_LEVELS of them. */
-static void advance(struct event_queue *q)
+/* Nothing is left of this window: the next one that has events, if it begins by `last`. Each
+ * round empties one bucket; an event passes at most WHEEL_LEVELS of them. */
+static bool advance(struct event_queue *q, sim_ps last)
 {
     int level = 0, slot = 0;
     run_end(q);
     for (;;) {
         CHECK(wheel_first(q, &level, &slot));
+        if (window_at(q, level, slot) << WINDOW_BITS > (uint64_t)last) return false;
         if (level == 0) break;
         wheel_spread(q, level, slot);
     }
     run_begin(q, slot);
+    return true;
 }
 
 /* Whether the first of the run comes before the first of the heap. Of two with one time and order
@@ -323,19 +331,28 @@ static inline void warm_up(const struct event_queue *q)
     }
 }
 
-bool event_queue_pop(struct event_queue *q, struct event *e)
+bool event_queue_pop_by(struct event_queue *q, sim_ps last, struct event *e)
 {
     if (q->count == 0) return false;
+    if (q->run_at == q->run_count && q->heap_count == 0 && !advance(q, last)) return false;
+    const bool run = q->run_at < q->run_count && run_first(q);
+    const struct event *first = run ? run_event(q, q->run_at) : &q->heap[0].event;
+    if (first->time > last) return false;
     q->count--;
-    if (q->run_at == q->run_count && q->heap_count == 0) advance(q);
-    if (q->run_at < q->run_count && run_first(q)) {
+    if (run) {
         warm_up(q);
-        *e = *run_event(q, q->run_at++);
+        *e = *first;
+        q->run_at++;
     } else {
         heap_take(q, e);
     }
     q->now = e->time;
     return true;
+}
+
+bool event_queue_pop(struct event_queue *q, struct event *e)
+{
+    return event_queue_pop_by(q, SIM_NEVER, e);
 }
 
 sim_ps event_queue_next_time(const struct event_queue *q)

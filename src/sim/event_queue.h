@@ -87,6 +87,10 @@ void event_queue_push(struct event_queue *q, const struct event *e);
 /* event_queue_pop: the first event into *e; false when there is none. */
 bool event_queue_pop(struct event_queue *q, struct event *e);
 
+/* event_queue_pop_by: the same if that is due by `last`, else false: the queue may then stand
+ * behind `last`, and nothing may be added up to it before something is taken. */
+bool event_queue_pop_by(struct event_queue *q, sim_ps last, struct event *e);
+
 /* event_queue_next_time: time of the first event, SIM_NEVER when there is none. */
 sim_ps event_queue_next_time(const struct event_queue *q);
 

@@ -56,10 +56,10 @@ void sim_foresee(struct sim *s, sim_action *action, sim_early *early)
     s->queue.early = early;
 }
 
-bool sim_step(struct sim *s)
+static inline bool dispatch(struct sim *s, sim_ps last)
 {
     struct event e;
-    if (!event_queue_pop(&s->queue, &e)) return false;
+    if (!event_queue_pop_by(&s->queue, last, &e)) return false;
     /* Durations are cut off at PS_TOO_LONG, so that a time past PS_LAST has not wrapped yet; its
      * next sum might. The run ends before this event, and sim_beyond says why. */
     if (__builtin_expect(e.time > PS_LAST, 0)) {
@@ -79,6 +79,8 @@ bool sim_step(struct sim *s)
     return true;
 }
 
+bool sim_step(struct sim *s) { return dispatch(s, SIM_NEVER); }
+bool sim_step_before(struct sim *s, sim_ps time) { return dispatch(s, time - 1); }
 sim_ps sim_next_time(const struct sim *s) { return event_queue_next_time(&s->queue); }
 int64_t sim_pending(const struct sim *s) { return (int64_t)s->queue.count; }
 bool sim_beyond(const struct sim *s) { return s->beyond; }

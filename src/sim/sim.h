@@ -40,6 +40,10 @@ void sim_foresee(struct sim *s, sim_action *action, sim_early *early);
  * (picoseconds.h). */
 bool sim_step(struct sim *s);
 
+/* sim_step_before: the same for an event earlier than `time`, at most PS_LAST; false when there is
+ * none. Then nothing may be posted before `time` until sim_step was called. */
+bool sim_step_before(struct sim *s, sim_ps time);
+
 /* sim_next_time: time of the earliest event, SIM_NEVER when there is none. */
 sim_ps sim_next_time(const struct sim *s);
 

@@ -15,6 +15,7 @@
 #include "machine/placement_jobs.h"
 #include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
+#include "vp/arrivals.h"
 #include "vp/explain.h"
 #include "vp/meeting.h"
 #include "vp/offload.h"
@@ -128,6 +129,7 @@ static bool build(struct jobs *j, struct err *e)
         return false;
     /* Before anything is sent: each job has an account of its own. */
     net_count_jobs(w->net, j->n);
+    arrivals_foresee(w);
     w->fibers = fiber_pool_create(w->nrank, j->load.stack_bytes, e);
     return w->fibers != NULL;
 }

@@ -2,8 +2,8 @@
  *
  * Files: world.c builds and runs, team.c on several threads; vp_comm.c is comm.h for a virtual
  * processor; clock.c its time; mailbox.c matches messages, matching.c, poll.c and timer.c where
- * time decides; pool.c keeps them; launch.c sends; rendezvous.c carries large ones; server.c is the
- * shared kernel server; background.c loads the links; deadlock.c and failure.c explain. */
+ * time decides; arrivals.c, pool.c, launch.c, rendezvous.c carry them; server.c is the shared
+ * kernel server; background.c loads the links; deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
 
@@ -87,6 +87,7 @@ struct world {
     struct vp **ready; /* (nown) ring of ranks that can go on */
     int ready_head, ready_count;
     struct message_pool *pool; /* of the host thread */
+    struct arrivals *arrivals; /* until receivers go on (arrivals.h); NULL: none */
     /* of several threads: each share of the ranks has its world (team.h); NULL: one */
     struct team *team;
     /* what several jobs share: ring, `stopped`, server (jobs.h); itself where there is one */
@@ -105,8 +106,8 @@ struct world {
     sim_ps barrier_latest, barrier_release;
     const struct vp *late; /* the rank whose clock would pass the end of time, NULL: none */
     int64_t background_events; /* of other jobs' traffic, pending */
-    sim_ps server_free; /* kernel server */
-    /* of the message end that it served last: when it began; whose that was */
+    /* kernel server; of the message end that it served last: when it began; whose that was */
+    sim_ps server_free;
     uint32_t server_path;
     int served_rank, served_stage;
     int64_t server_bytes, span_capacity;
@@ -155,8 +156,7 @@ void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int pe
  * trip. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to);
 
-/* vp_comm_type: comm.h as a virtual processor implements it (vp_comm.c). */
-extern const struct comm_type vp_comm_type;
+extern const struct comm_type vp_comm_type; /* comm.h as a virtual processor does it (vp_comm.c) */
 
 /* server_pass (server.c): be served by the machine's one kernel server for a message end of
  * `bytes`; blocks, charges waiting to contention, and returns the service time that is still to be

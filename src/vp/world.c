@@ -16,6 +16,7 @@
 #include "machine/node_use.h"
 #include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
+#include "vp/arrivals.h"
 #include "vp/explain.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
@@ -50,7 +51,8 @@ void world_deliver(void *context, struct net_message *m)
 {
     struct world *w = context;
     struct message *own = (struct message *)m;
-    if (w->team && team_elsewhere(w, own)) team_post(w, own);
+    if (w->arrivals) arrivals_add(w, own);
+    else if (w->team && team_elsewhere(w, own)) team_post(w, own);
     else world_arrived(own);
 }
 
@@ -80,12 +82,17 @@ static void tell_heartbeat(const struct world *w)
  * with one clock for events and one for each rank. */
 void world_loop(struct world *w)
 {
-    unsigned quiet_events = PULSE_EVENTS;
+    int quiet_events = PULSE_EVENTS;
     do {
-        /* All that can run without a further event runs; then one event is taken, which
-         * may wake others. */
+        /* More events first, as long as they come before all that has arrived; then all
+         * that can run without a further event runs, and one event is taken, which may wake
+         * others. */
+        if (w->arrivals) {
+            while (arrivals_step(w)) quiet_events--;
+            arrivals_give(w);
+        }
         if (w->ready_count) world_resume(w, INT64_MAX);
-        if (--quiet_events == 0) {
+        if (--quiet_events <= 0) {
             tell_heartbeat(w);
             quiet_events = PULSE_EVENTS;
         }
@@ -213,19 +220,6 @@ void world_copy_links(struct world *w)
     w->result->nlink = n;
 }
 
-/* A message is about to arrive: where its receiver keeps what it waits for, then the first of that.
- * Otherwise each arrival among many ranks waits for memory twice. */
-static void foresee(const struct net_message *m, int step)
-{
-    const struct vp *to = ((const struct message *)m)->to;
-    if (step == 0) {
-        __builtin_prefetch(&to->stages);
-    } else if (to->posted) {
-        __builtin_prefetch(to->posted);
-        __builtin_prefetch((const char *)to->posted + 64);
-    }
-}
-
 void world_name_stages(struct run_result *r, int nstage, const char *const *name)
 {
     CHECK(nstage >= 1 && nstage < RUN_MAX_STAGES);
@@ -245,9 +239,8 @@ bool world_make_network(struct world *w, bool links, struct err *e)
 {
     w->net = net_create(w->machine, w->topology, w->sim, w->scratch, world_deliver, w, links, e);
     if (!w->net) return false;
-    /* Both before the first message: neither may change while one is under way. */
+    /* Before the first message: it may not change while one is under way. */
     net_set_in_order(w->net, w->eager_only);
-    net_foresee(w->net, foresee);
     return true;
 }
 
@@ -265,6 +258,7 @@ static bool build(struct world *w, struct err *e)
     w->software = software_cost_used(m, &use);
     w->result->working_set = w->load->working_set;
     if (!world_make_network(w, w->record->links, e)) return false;
+    if (!arrivals_make(w)) arrivals_foresee(w);
     meeting_create(w);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());

@@ -43,7 +43,15 @@ static void against_the_list(uint64_t spread)
         }
         struct event e;
         size_t best = twin_first(twin, n);
-        assert_true(event_queue_pop(&q, &e));
+        /* Half of them only if they are due by some limit. After a no all that follows is later. */
+        const sim_ps limit =
+            random_below(&r, 2) ? SIM_NEVER : now + (sim_ps)random_below(&r, 2 * spread);
+        const bool taken = event_queue_pop_by(&q, limit, &e);
+        assert_int_equal(taken, twin[best].time <= limit);
+        if (!taken) {
+            now = limit + 1;
+            continue;
+        }
         assert_int_equal(e.argument, twin[best].argument);
         assert_int_equal(e.time, twin[best].time);
         now = e.time;

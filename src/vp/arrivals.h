@@ -1,0 +1,25 @@
+/* arrivals.h - messages that the network has brought, until their receivers go on. */
+#ifndef VP_ARRIVALS_H
+#define VP_ARRIVALS_H
+
+#include "vp/vp.h"
+
+/* arrivals_make: from now on messages of w's network wait for their receivers (arrivals_add), where
+ * that acts on no result; else false: w->arrivals stays NULL, and each is matched when it comes.
+ * After the network, before any message. */
+bool arrivals_make(struct world *w);
+
+/* arrivals_foresee: instead, ask for the memory of each receiver shortly before. */
+void arrivals_foresee(struct world *w);
+
+/* arrivals_add: keep m, whose arrival is known, from an event. */
+void arrivals_add(struct world *w, struct message *m);
+
+/* arrivals_give: match all that are kept, in the order in which they came; wakes receivers. */
+void arrivals_give(struct world *w);
+
+/* arrivals_step: dispatch an event that no receiver of what is kept could forestall: true; false
+ * where there is none, or they must go on first. */
+bool arrivals_step(struct world *w);
+
+#endif
