@@ -81,17 +81,6 @@ int routing_next(const struct routing *r, struct route *p, const struct routing_
     return r->type->next(r, p, view, option);
 }
 
-void routing_take(const struct routing *r, struct route *p, const struct route_option *o,
-                  int channel)
-{
-    CHECK(channel >= o->first && channel < o->first + o->count);
-    p->router = r->end[o->link];
-    p->part = o->part;
-    p->last = o->last;
-    p->channel = channel;
-    p->hops++;
-}
-
 /* Nothing is in the way: the option of the highest priority, of equals the first, on its last
  * channel, which is none of the escape channels. */
 bool routing_empty(const struct routing *r, struct route *p, int *link)

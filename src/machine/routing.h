@@ -8,6 +8,7 @@
 #ifndef MACHINE_ROUTING_H
 #define MACHINE_ROUTING_H
 
+#include "base/check.h"
 #include "machine/topology.h"
 #include "spec/routing_list.h"
 
@@ -83,8 +84,16 @@ int routing_next(const struct routing *r, struct route *p, const struct routing_
                  struct route_option *option);
 
 /* routing_take: p goes over option o on its channel `channel`. */
-void routing_take(const struct routing *r, struct route *p, const struct route_option *o,
-                  int channel);
+static inline void routing_take(const struct routing *r, struct route *p,
+                                const struct route_option *o, int channel)
+{
+    CHECK(channel >= o->first && channel < o->first + o->count);
+    p->router = r->end[o->link];
+    p->part = o->part;
+    p->last = o->last;
+    p->channel = channel;
+    p->hops++;
+}
 
 /* routing_empty: one step of p through an empty network, over *link; false when it is there. */
 bool routing_empty(const struct routing *r, struct route *p, int *link);

@@ -54,52 +54,34 @@ struct lattice *lattice_create(const struct routing *r, struct arena *a)
     return g;
 }
 
-int lattice_dimension(const struct lattice *g, int from, int to, bool descending)
-{
-    for (int i = 0; i < g->ndim; i++) {
-        const int d = descending ? g->ndim - 1 - i : i;
-        if (lattice_at(g, from, d) != lattice_at(g, to, d)) return d;
-    }
-    return -1;
-}
-
-int lattice_link(const struct lattice *g, const struct route *p, int d, int to, int way)
-{
-    const int *row = &g->out[p->router * g->degree + g->first[d]];
-    /* The cable of a bundle by the packet's number, without a draw: loads do not matter to it. */
-    if (g->direct) return row[to] + (int)(p->choice % (uint64_t)g->bundle[d]);
-    return row[way];
-}
-
-int lattice_way(const struct lattice *g, int d, int x, int y)
-{
-    const int k = g->radix[d];
-    if (!g->wraps) return y < x;
-    const int up = (y - x + k) % k;
-    return 2 * up == k ? -1 : 2 * up > k;
-}
-
 /* ---- dimension order ---- */
 
 /* The one way on to router `to` by order of dimensions. On a ring: straight on in the dimension of
  * the last link, else the shorter way, of equals by chance, and its class. */
-static struct route_option in_order(const struct lattice *g, struct route *p, int to,
-                                    bool descending)
+static inline void in_order(const struct lattice *g, struct route *p, int to, bool descending,
+                            struct route_option *o)
 {
     const int d = lattice_dimension(g, p->router, to, descending);
     const int x = lattice_at(g, p->router, d), y = lattice_at(g, to, d);
-    struct route_option o = {.part = p->part};
-    int way;
+    int way, part = p->part;
     if (g->wraps && p->last >= 0 && p->last / 2 == d) {
         way = p->last % 2;
     } else {
         way = lattice_way(g, d, x, y);
         if (way < 0) way = !routing_draw(p, 2);
-        o.part = lattice_crosses(g, x, y, way);
+        part = lattice_crosses(g, x, y, way);
     }
-    o.last = 2 * d + way;
-    o.link = lattice_link(g, p, d, y, way);
-    return o;
+    *o = (struct route_option){
+        .link = lattice_link(g, p, d, y, way), .part = part, .last = 2 * d + way};
+}
+
+/* The load of its link. */
+static int64_t used_in_order(const struct lattice *g, struct route *p, int to, bool descending,
+                             const struct routing_view *view)
+{
+    struct route_option o;
+    in_order(g, p, to, descending, &o);
+    return routing_used(view, o.link);
 }
 
 static bool order_create(struct routing *r, struct arena *a, struct err *e)
@@ -118,7 +100,7 @@ static int order_next(const struct routing *r, struct route *p, const struct rou
     const struct lattice *g = r->state;
     (void)view;
     if (p->router == p->target) return 0;
-    *option = in_order(g, p, p->target, false);
+    in_order(g, p, p->target, false, option);
     option->count = r->channels;
     if (g->wraps) option->count = routing_half(r, option->part, &option->first);
     return 1;
@@ -146,12 +128,12 @@ static int either_next(const struct routing *r, struct route *p, const struct ro
     if (p->channel < 0) {
         int64_t up = 0, down = 0;
         if (r->by_load) {
-            up = routing_used(view, in_order(g, p, p->target, false).link);
-            down = routing_used(view, in_order(g, p, p->target, true).link);
+            up = used_in_order(g, p, p->target, false, view);
+            down = used_in_order(g, p, p->target, true, view);
         }
         p->phase = up == down ? !routing_draw(p, 2) : up > down;
     }
-    *option = in_order(g, p, p->target, p->phase);
+    in_order(g, p, p->target, p->phase, option);
     option->count = routing_half(r, p->phase, &option->first);
     return 1;
 }
@@ -206,7 +188,7 @@ static int through_next(const struct routing *r, struct route *p, const struct r
         p->last = -1;
     }
     if (p->phase == 1 && p->router == p->target) return 0;
-    *option = in_order(g, p, p->phase ? p->target : p->via, false);
+    in_order(g, p, p->phase ? p->target : p->via, false, option);
     option->count = g->wraps ? quarter(r, option->part, p->phase, &option->first)
                              : routing_half(r, p->phase, &option->first);
     return 1;
@@ -243,8 +225,8 @@ static void butterfly_choose(const struct lattice *g, struct route *p,
     }
     p->phase = 1;
     if (via == p->router) return;
-    const int64_t near = routing_used(view, in_order(g, p, p->target, false).link),
-                  far = routing_used(view, in_order(g, p, via, false).link);
+    const int64_t near = used_in_order(g, p, p->target, false, view),
+                  far = used_in_order(g, p, via, false, view);
     const int there = distance(g, p->router, via) + distance(g, via, p->target);
     if (distance(g, p->router, p->target) * near <= there * far + THRESHOLD) return;
     p->via = via;
@@ -258,7 +240,7 @@ static int butterfly_next(const struct routing *r, struct route *p, const struct
     if (p->channel < 0 && p->router != p->target) butterfly_choose(g, p, view);
     if (p->phase == 0 && p->router == p->via) p->phase = 1;
     if (p->router == p->target && (p->phase == 1 || p->via < 0)) return 0;
-    *option = in_order(g, p, p->phase ? p->target : p->via, false);
+    in_order(g, p, p->phase ? p->target : p->via, false, option);
     option->count = routing_half(r, p->phase, &option->first);
     return 1;
 }

@@ -31,15 +31,36 @@ static inline int lattice_at(const struct lattice *g, int router, int d)
 
 /* lattice_dimension: the first dimension in which two routers differ, -1: none; from the last one
  * on if descending. */
-int lattice_dimension(const struct lattice *g, int from, int to, bool descending);
+static inline int lattice_dimension(const struct lattice *g, int from, int to, bool descending)
+{
+    const int n = g->ndim, *x = &g->at[from * n], *y = &g->at[to * n];
+    int d = descending ? n - 1 : 0;
+    if (descending)
+        while (d >= 0 && x[d] == y[d]) d--;
+    else
+        while (d < n && x[d] == y[d]) d++;
+    return d < n ? d : -1;
+}
 
 /* lattice_link: the link from p's router in dimension d to coordinate `to`, upwards (way 0) or
- * downwards (1) where there are two ways. */
-int lattice_link(const struct lattice *g, const struct route *p, int d, int to, int way);
+ * downwards (1) where there are two ways. The cable of a bundle is that of the packet's number,
+ * without a draw: loads do not matter to it. */
+static inline int lattice_link(const struct lattice *g, const struct route *p, int d, int to,
+                               int way)
+{
+    const int *row = &g->out[p->router * g->degree + g->first[d]];
+    if (!g->direct) return row[way];
+    return g->bundle[d] == 1 ? row[to] : row[to] + (int)(p->choice % (uint64_t)g->bundle[d]);
+}
 
 /* lattice_way: 0 up or 1 down from coordinate x to y in dimension d, the shorter way round a ring;
  * -1: both are as long. */
-int lattice_way(const struct lattice *g, int d, int x, int y);
+static inline int lattice_way(const struct lattice *g, int d, int x, int y)
+{
+    if (!g->wraps) return y < x;
+    const int k = g->radix[d], up = y < x ? y - x + k : y - x;
+    return 2 * up == k ? -1 : 2 * up > k;
+}
 
 /* lattice_crosses: whether the way from x to y in direction `way` passes the edge of the ring. */
 static inline bool lattice_crosses(const struct lattice *g, int x, int y, int way)

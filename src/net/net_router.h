@@ -57,19 +57,24 @@ struct lane {
     sim_ps due;             /* see lane_state */
     uint32_t accept, grant; /* round robin: as a FIFO that asks, as a channel that is given */
     int32_t port;
-    int16_t channel;
+    int16_t channel; /* of that port */
     bool starved; /* somebody upstream waits for a flit of it to be sent */
     bool bars;    /* one of its options has no channel, which spoils its turn at the switch */
 
+    struct port *of;                 /* port[port] */
     struct leg *front, *back;        /* worms in the FIFO */
     struct route_option *option;     /* (noption) of the front, none: to its node */
     struct lane *busy, **busy_link;  /* the router's lanes that have a front */
     sim_ps left;                     /* when the tail of the one that left last had left */
     enum lane_state state;
     int noption;
-    int out_first, out_count; /* channels to its node */
+    /* Its first or only way on: port and channels; the outputs of all. */
+    int32_t way;
+    int first, count;
+    uint64_t ways; /* see router_bit */
 
     int room; /* options that there is memory for */
+    struct route_option only; /* the first of these */
     /* Of one allocation: */
     int pick_priority;
     struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */
@@ -111,6 +116,13 @@ struct routers {
     int iterations;        /* of an allocation */
     bool single;           /* a channel that a lone head is given in the first one stays its own */
     int64_t ring;          /* places of a lane's arrays - 1: a power of two of at least a buffer */
+    /* Of the net, where a step finds them: hop latency and credit; from when a flit crosses a port
+     * until it is in the FIFO behind it, and a head's setup there; a channel's pause after a tail;
+     * buffer and channels; the first way out. */
+    sim_ps tau, credit, reach, setup, pause;
+    int64_t buffer;
+    uint32_t nchannel;
+    int32_t sink;
     struct port *port;     /* (nresource) */
     struct router *router; /* (nrouter) */
     struct leg **sending;  /* (nnode) packets that leave their nodes */
@@ -119,28 +131,14 @@ struct routers {
     struct leg *free_leg;
     struct ask *ask; /* (room) scratch of one allocation (net_router_allocate.c) */
     struct bid *bid;
-    struct lane **active;
-    int nask, nbid, ask_room, bid_room, active_room;
+    struct lane **active; /* (lanes of the router that has most) */
+    int nask, nbid, ask_room, bid_room;
     sim_ps now;
     bool even;   /* links and ways out have one rate */
+    bool fits, looks, looks_on; /* of the rule: `fits`, loads decide at the source, also later */
     bool spares; /* no look at a router without need (router_gather) */
     struct gather *gather; /* one event for all of an instant; NULL: one for each router */
 };
-
-/* router_lanes_make: the lanes behind port p, at their first use (router_lanes). */
-struct lane *router_lanes_make(struct routers *g, int p);
-
-/* router_route: the way on of v's front; what it asks for from when on. */
-void router_route(struct routers *g, struct lane *v);
-
-/* router_front: lane v may have a new front: find out when its way on is due. */
-void router_front(struct routers *g, struct lane *v);
-
-/* router_own: the front of v gets lane `out`, by its option o. */
-void router_own(struct routers *g, struct lane *v, struct lane *out);
-
-/* router_send: the front of v sends what moves at once; its channel and the switch are its own. */
-void router_send(struct routers *g, struct lane *v, sim_ps now);
 
 /* router_look_at: if router r is due: channels to heads, then the switch to flits. router_look: an
  * event of router `argument`. */
@@ -158,11 +156,5 @@ void router_source_look(struct routers *g, int node, sim_ps now);
 
 /* router_gather: net_gather. */
 bool router_gather(struct net *n);
-
-/* router_leg: lane v of port p becomes w's: a leg at the end of its FIFO. */
-struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v);
-void router_leg_return(struct routers *g, struct leg *l);
-struct worm *router_worm(struct routers *g, struct flight *m);
-void router_worm_return(struct routers *g, struct worm *w);
 
 #endif

@@ -20,25 +20,6 @@ struct bid {
     bool spec; /* its channel is still being asked for */
 };
 
-/* The place of a number after `turn`, in unsigned arithmetic that wraps. */
-static inline uint32_t after(uint32_t number, uint32_t turn) { return number - turn; }
-
-static inline uint32_t input_number(const struct routers *g, const struct lane *v)
-{
-    return g->port[v->port].in * (uint32_t)g->fabric.nchannel + (uint32_t)v->channel;
-}
-
-static inline uint32_t output_number(const struct routers *g, const struct lane *v)
-{
-    return g->port[v->port].out * (uint32_t)g->fabric.nchannel + (uint32_t)v->channel;
-}
-
-/* The channel after v's, round. */
-static inline int next_channel(const struct routers *g, const struct lane *v)
-{
-    return v->channel + 1 < g->fabric.nchannel ? v->channel + 1 : 0;
-}
-
 /* ---- channels ---- */
 
 static void ask_add(struct routers *g, struct lane *in, struct lane *out, int priority)
@@ -54,15 +35,6 @@ static void ask_add(struct routers *g, struct lane *in, struct lane *out, int pr
     g->ask[g->nask++] = (struct ask){in, out, priority};
 }
 
-/* A worm that spreads over two channels and is not the first in the second cannot turn to the
- * escape channels, so that those above them are given to packets that fit (Ma, Enright Jerger and
- * Wang 2012), or when empty. */
-static bool may_hold(const struct routers *g, const struct lane *v, const struct worm *w)
-{
-    if (!g->routing->fits || v->channel < g->routing->escape || v->in == v->out) return true;
-    return g->fabric.buffer - (v->in - v->out) >= w->flits;
-}
-
 /* The channels of one option that are free; whole packets also need room. Returns when it may be
  * worth asking again for one that is not. */
 static sim_ps ask_option(struct routers *g, struct lane *v, const struct route_option *o,
@@ -76,7 +48,7 @@ static sim_ps ask_option(struct routers *g, struct lane *v, const struct route_o
     for (int i = first; i < first + count; i++) {
         if (lane[i].owner) continue;
         sim_ps at = router_later(now, lane[i].free);
-        if (o && !may_hold(g, &lane[i], v->front->worm)) continue;
+        if (o && !router_may_hold(g, &lane[i], v->front->worm)) continue;
         if (g->whole && o)
             at = router_later(at, router_room(g, &lane[i], v->front->worm->flits, now));
         if (at > now) again = router_sooner(again, at);
@@ -98,8 +70,8 @@ static void channels_offer(struct routers *g)
     for (int i = 0; i < g->nask; i++) {
         struct lane *in = g->ask[i].in, *out = g->ask[i].out;
         if (out->match || in->match) continue;
-        if (!out->fresh ||
-            after(input_number(g, in), out->grant) < after(input_number(g, out->fresh), out->grant))
+        if (!out->fresh || router_after(router_input(g, in), out->grant) <
+                               router_after(router_input(g, out->fresh), out->grant))
             out->fresh = in;
         out->wish = out->fresh;
     }
@@ -116,8 +88,8 @@ static void channels_accept(struct routers *g, bool turns)
         if (out->wish != in) continue;
         if (in->pick && priority < in->pick_priority) continue;
         if (!in->pick || priority > in->pick_priority ||
-            after(output_number(g, out), in->accept) <
-                after(output_number(g, in->pick), in->accept)) {
+            router_after(router_output(g, out), in->accept) <
+                router_after(router_output(g, in->pick), in->accept)) {
             in->pick = out;
             in->pick_priority = priority;
         }
@@ -128,8 +100,8 @@ static void channels_accept(struct routers *g, bool turns)
         in->match = out;
         out->match = in;
         if (!turns) continue;
-        out->grant = input_number(g, in) + 1;
-        in->accept = output_number(g, out) + 1;
+        out->grant = router_input(g, in) + 1;
+        in->accept = router_output(g, out) + 1;
     }
 }
 
@@ -240,7 +212,8 @@ static void switch_offer(struct routers *g)
     for (int i = 0; i < g->nbid; i++) {
         struct port *in = g->bid[i].in, *out = g->bid[i].out;
         if (out->match || in->match) continue;
-        if (!out->wish || after(in->in, out->grant) < after(out->wish->in, out->grant))
+        if (!out->wish ||
+            router_after(in->in, out->grant) < router_after(out->wish->in, out->grant))
             out->wish = in;
     }
 }
@@ -254,7 +227,8 @@ static void switch_accept(struct routers *g, bool turns)
     for (int i = 0; i < g->nbid; i++) {
         struct port *in = g->bid[i].in, *out = g->bid[i].out;
         if (out->wish != in || in->match) continue;
-        if (!in->pick || after(out->out, in->accept) < after(in->pick->out, in->accept))
+        if (!in->pick ||
+            router_after(out->out, in->accept) < router_after(in->pick->out, in->accept))
             in->pick = out;
     }
     for (int i = 0; i < g->nbid; i++) {
@@ -314,7 +288,7 @@ static bool winner_sends(struct routers *g, const struct bid *b, sim_ps now)
 {
     struct lane *v = b->lane;
     if (b->spec && v->bars) return false;
-    b->in->turn = next_channel(g, v);
+    b->in->turn = router_next_channel(g, v);
     if (v->state != LANE_SENDING) return false;
     const struct leg *to = v->front->ahead;
     if (&g->port[to->port] != b->out) return false;
@@ -326,92 +300,7 @@ static bool winner_sends(struct routers *g, const struct bid *b, sim_ps now)
     return true;
 }
 
-/* Whether the front of v still has to send its head. */
-static bool waits(const struct lane *v)
-{
-    return v->state == LANE_ASKING || (v->state == LANE_SENDING && v->front->ahead->sent == 0);
-}
-
-/* ---- a lane that is alone ---- */
-
-/* The one that a head without rivals gets of the channels of its only way: the one whose turn it
- * is. *again: when to ask for others. */
-static struct lane *channel_alone(struct routers *g, struct lane *v, const struct route_option *o,
-                                  sim_ps now, sim_ps *again)
-{
-    struct lane *lane = router_lanes(g, router_out(g, v, o)), *best = NULL;
-    int first;
-    const int count = router_channels(v, o, &first);
-    for (int i = first; i < first + count; i++) {
-        struct lane *out = &lane[i];
-        if (out->owner || (o && !may_hold(g, out, v->front->worm))) continue;
-        sim_ps at = router_later(now, out->free);
-        if (g->whole && o) at = router_later(at, router_room(g, out, v->front->worm->flits, now));
-        if (at > now) *again = router_sooner(*again, at);
-        else if (!best ||
-                 after(output_number(g, out), v->accept) < after(output_number(g, best), v->accept))
-            best = out;
-    }
-    return best;
-}
-
-/* What an allocation comes to when the head of v alone asks: it gets what it wants, and turns move
- * on. The same as allocate_together, without lists. */
-static sim_ps ask_alone(struct routers *g, struct lane *v, sim_ps now)
-{
-    sim_ps again = SIM_NEVER;
-    struct port *in = &g->port[v->port];
-    const struct route_option *o = v->noption > 0 ? v->option : NULL;
-    struct port *p = &g->port[router_out(g, v, o)];
-    struct lane *out = channel_alone(g, v, o, now, &again);
-    const sim_ps flit = ps_later(now, p->flit), at = router_later(in->passed, p->free);
-    /* Its bid at the switch does not wait for the channel. */
-    bool bids = eligible(g, v, o, now);
-    if (bids && at > now) again = router_sooner(again, at);
-    bids = bids && at <= now;
-    /* The one offer that it accepts moves both turns on, as in a first round. */
-    if (out) {
-        out->grant = input_number(g, v) + 1;
-        v->accept = output_number(g, out) + 1;
-        v->match = out;
-        router_own(g, v, out);
-    }
-    /* So does the switch, even if there is no channel to use it for. */
-    if (bids) {
-        p->grant = in->in + 1;
-        in->accept = p->out + 1;
-        in->turn = next_channel(g, v);
-    }
-    if (!out) return bids ? router_sooner(again, flit) : again;
-    /* It has a channel and the switch: a flit goes if its buffer has room. */
-    if (!bids || (o && router_room(g, out, router_unit(g, v->front->worm), now) > now))
-        return router_sooner(again, flit);
-    router_send(g, v, now);
-    return again;
-}
-
-/* When the front of v alone sends: it has a flit, a credit and the way. */
-static void send_alone(struct routers *g, struct lane *v, sim_ps now)
-{
-    struct port *in = &g->port[v->port], *p = &g->port[v->front->ahead->port];
-    p->grant = in->in + 1;
-    in->accept = p->out + 1;
-    in->turn = next_channel(g, v);
-    router_send(g, v, now);
-}
-
 /* ---- a look ---- */
-
-/* Room for one more active lane: there are never more than lanes. */
-static void active_room(struct routers *g, int n)
-{
-    if (n < g->active_room) return;
-    const int room = 2 * g->active_room + 64;
-    struct lane **more = TAKE(g->fabric.net->arena, room, struct lane *);
-    for (int i = 0; i < n; i++) more[i] = g->active[i];
-    g->active = more;
-    g->active_room = room;
-}
 
 /* The lanes of router r that can do something now into g->active; returns how many. *again: when
  * others may. Loads are looked at by all of an instant together, before anything moves. */
@@ -425,7 +314,6 @@ static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
             *again = router_sooner(*again, at);
             continue;
         }
-        active_room(g, n);
         g->active[n++] = v;
     }
     return n;
@@ -439,7 +327,6 @@ static int due_find(struct routers *g, int r, sim_ps now)
     for (struct lane *v = g->router[r].busy; v; v = v->busy) {
         if (v->due > now) continue;
         if (v->state == LANE_ROUTING) return -1;
-        active_room(g, n);
         g->active[n++] = v;
     }
     return n;
@@ -447,21 +334,21 @@ static int due_find(struct routers *g, int r, sim_ps now)
 
 enum { MOST_APART = 6 };
 
-/* Whether none of the first n of g->active is in another's way. */
+/* Whether none of the first n of g->active is in another's way: no two have an input or an output
+ * in common, and a channel that a lone head is given stays its own. */
 static bool are_apart(const struct routers *g, int n)
 {
-    int out[MOST_APART];
-    if (n <= 0 || n > MOST_APART) return n == 0;
+    uint64_t in = 0, out = 0;
+    if (n > MOST_APART) return false;
     for (int k = 0; k < n; k++) {
         const struct lane *v = g->active[k];
-        if (v->state == LANE_ASKING && (v->noption > 1 || !g->single)) return false;
-        out[k] = v->state == LANE_SENDING ? v->front->ahead->port
-                                          : router_out(g, v, v->noption > 0 ? v->option : NULL);
-        /* The same way out, or the same input of the switch: allocation decides. */
-        for (int i = 0; i < k; i++)
-            if (out[i] == out[k] || g->active[i]->port == v->port) return false;
+        const uint64_t entry = router_bit(v->of->in);
+        if (v->state == LANE_ASKING && !(g->single && (v->noption <= 1 || g->gather))) return false;
+        if ((in & entry) || (out & v->ways)) return false;
+        in |= entry;
+        out |= v->ways;
     }
-    return true;
+    return n >= 0;
 }
 
 /* Channels to heads, the switch to flits. */
@@ -480,25 +367,32 @@ static sim_ps allocate_together(struct routers *g, int n, sim_ps now)
         again = router_sooner(again, ps_later(now, b->out->flit));
     }
     for (int i = 0; i < g->nask; i++)
-        if (waits(g->ask[i].in))
+        if (router_waits(g->ask[i].in))
             again = router_sooner(again, ps_later(now, g->port[g->ask[i].out->port].flit));
     return again;
 }
 
-static sim_ps router_allocate(struct routers *g, int r, sim_ps now)
+/* The only lane of a router that has a front. */
+static sim_ps look_single(struct routers *g, struct lane *v, sim_ps now)
+{
+    if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
+    const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
+    if (at > now) return at;
+    if (v->state != LANE_ASKING || g->single) return router_pass(g, v, now);
+    g->active[0] = v;
+    return allocate_together(g, 1, now);
+}
+
+static sim_ps look_several(struct routers *g, int r, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
-    g->now = now;
     /* Events of its own come in the order in which they are asked for: as ever. */
     const bool meet = !g->gather && !are_apart(g, due_find(g, r, now));
     const int n = active_find(g, r, now, &again);
     if (meet || !are_apart(g, n)) return router_sooner(again, allocate_together(g, n, now));
     /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
-    for (int k = 0; k < n; k++) {
-        struct lane *v = g->active[k];
-        if (v->state == LANE_SENDING) send_alone(g, v, now);
-        else again = router_sooner(again, ask_alone(g, v, now));
-    }
+    for (int k = 0; k < n; k++)
+        again = router_sooner(again, router_pass(g, g->active[k], now));
     return again;
 }
 
@@ -507,7 +401,11 @@ void router_look_at(struct routers *g, int r, sim_ps now)
     struct router *o = &g->router[r];
     if (o->wake != now + 1) return; /* an earlier look did it */
     o->wake = 0;
-    const sim_ps again = router_allocate(g, r, now);
+    g->now = now;
+    struct lane *v = o->busy;
+    if (!v) return;
+    const sim_ps again =
+        g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
     if (again != SIM_NEVER) router_wake(g, r, again);
 }
 

@@ -30,15 +30,14 @@ static void set_make(struct gather_set *s, int n, struct arena *a)
 /* The lowest number out of the set; -1: it is empty. */
 static inline int set_take(struct gather_set *s)
 {
-    for (int k = 0; k < s->nfull; k++) {
-        if (!s->full[k]) continue;
-        const int w = k * GATHER_WORD + __builtin_ctzll(s->full[k]);
-        const int i = w * GATHER_WORD + __builtin_ctzll(s->word[w]);
-        s->word[w] &= s->word[w] - 1;
-        if (!s->word[w]) s->full[k] &= s->full[k] - 1;
-        return i;
-    }
-    return -1;
+    uint64_t *full = s->full, *const end = full + s->nfull;
+    while (!*full)
+        if (++full == end) return -1;
+    const int w = (int)(full - s->full) * GATHER_WORD + __builtin_ctzll(*full);
+    const uint64_t word = s->word[w], rest = word & (word - 1);
+    s->word[w] = rest;
+    if (!rest) *full &= *full - 1;
+    return w * GATHER_WORD + __builtin_ctzll(word);
 }
 
 /* ---- looks ---- */
@@ -150,6 +149,9 @@ bool router_gather(struct net *n)
     g->gather = TAKE(n->arena, 1, struct gather);
     g->gather->unit = n->link.flit;
     g->gather->per_unit = 1.0 / (double)n->link.flit;
+    g->gather->hop = -1; /* while it is found */
+    g->gather->hop_steps = gather_steps(g->gather, g->tau);
+    g->gather->hop = g->tau;
     set_make(&g->gather->again, n->topology->nrouter, n->arena);
     g->fabric.wake = post_source;
     g->post = post_gathered;

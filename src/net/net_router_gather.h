@@ -22,6 +22,8 @@ struct gather {
     sim_ps base;     /* the instant of slot `at`; none that is posted is earlier */
     sim_ps unit;     /* from slot to slot */
     double per_unit; /* 1 / unit */
+    sim_ps hop;      /* a hop latency, which most look ahead, */
+    int hop_steps;   /* in slots; -1: none */
     unsigned at;
     int posted;              /* slots */
     struct gather_set again; /* routers that are looked at again at `base` */
@@ -31,15 +33,17 @@ struct gather {
 /* gather_set_add: number i into the set. */
 static inline void gather_set_add(struct gather_set *s, int i)
 {
-    const unsigned n = (unsigned)i;
-    s->word[n / GATHER_WORD] |= UINT64_C(1) << n % GATHER_WORD;
-    s->full[n / GATHER_WORD / GATHER_WORD] |= UINT64_C(1) << n / GATHER_WORD % GATHER_WORD;
+    const unsigned n = (unsigned)i, w = n / GATHER_WORD;
+    const uint64_t others = s->word[w];
+    s->word[w] = others | UINT64_C(1) << n % GATHER_WORD;
+    if (!others) s->full[w / GATHER_WORD] |= UINT64_C(1) << w % GATHER_WORD;
 }
 
 /* gather_steps: how many slots after `base` time `at` is; -1: it is between slots, or too far. */
 static inline int gather_steps(const struct gather *q, sim_ps at)
 {
     const sim_ps ahead = at - q->base;
+    if (ahead == q->hop) return q->hop_steps;
     const int64_t k = (int64_t)((double)ahead * q->per_unit + 0.5);
     return k < GATHER_SLOTS && k * q->unit == ahead ? (int)k : -1;
 }

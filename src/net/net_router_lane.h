@@ -1,9 +1,37 @@
-/* net_router_lane.h - what routers ask of lanes at every step: room, channels, ways out
+/* net_router_lane.h - what routers do with lanes at every step: fronts, room, channels, ways out
  * (net_router.h). */
 #ifndef NET_NET_ROUTER_LANE_H
 #define NET_NET_ROUTER_LANE_H
 
 #include "net/net_router.h"
+
+/* router_lanes_make: the lanes behind port p, at their first use (router_lanes). */
+struct lane *router_lanes_make(struct routers *g, int p);
+
+/* router_route: the way on of v's front; what it asks for from when on. */
+void router_route(struct routers *g, struct lane *v);
+
+/* router_front: lane v may have a new front: find out when its way on is due. */
+void router_front(struct routers *g, struct lane *v);
+
+/* router_front_comes: v has a front, whose head has crossed its port. */
+void router_front_comes(struct routers *g, struct lane *v);
+
+/* router_own: the front of v gets lane `out`, by its option o. */
+void router_own(struct routers *g, struct lane *v, struct lane *out);
+
+/* router_send: the front of v sends what moves at once; its channel and the switch are its own. */
+void router_send(struct routers *g, struct lane *v, sim_ps now);
+
+/* router_pass: what an allocation comes to when v alone asks or sends: it gets what it wants, and
+ * turns move on. Returns when to look again; SIM_NEVER: nothing of v needs it. */
+sim_ps router_pass(struct routers *g, struct lane *v, sim_ps now);
+
+/* router_leg: lane v of port p becomes w's: a leg at the end of its FIFO. */
+struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v);
+void router_leg_return(struct routers *g, struct leg *l);
+struct worm *router_worm(struct routers *g, struct flight *m);
+void router_worm_return(struct routers *g, struct worm *w);
 
 /* router_later, router_sooner: of two times the later, the sooner one. */
 static inline sim_ps router_later(sim_ps a, sim_ps b) { return a > b ? a : b; }
@@ -22,20 +50,28 @@ static inline struct lane *router_lanes(struct routers *g, int p)
  * ahead left at one rate; checked one by one where rates differ. */
 static inline sim_ps router_room(const struct routers *g, struct lane *v, int32_t flits, sim_ps now)
 {
-    const struct fabric *f = &g->fabric;
-    const int64_t last = v->in + flits - 1 - f->buffer;
+    const int64_t last = v->in + flits - 1 - g->buffer;
     if (last >= v->out) {
         v->starved = true;
         return SIM_NEVER;
     }
     if (last < 0) return now;
-    const struct port *p = &g->port[v->port];
-    const sim_ps late = f->net->credit + p->wire;
-    for (int32_t j = g->even ? flits - 1 : 0; j < flits; j++) {
-        const int64_t n = v->in + j - f->buffer;
+    const struct port *p = v->of;
+    const sim_ps late = g->credit + p->wire;
+    if (g->even)
+        return router_later(now, v->stay[last & g->ring].go + late - (flits - 1) * p->flit);
+    for (int32_t j = 0; j < flits; j++) {
+        const int64_t n = v->in + j - g->buffer;
         if (n >= 0) now = router_later(now, v->stay[n & g->ring].go + late - j * p->flit);
     }
     return now;
+}
+
+/* lane_enter: l at the end of v's FIFO. */
+static inline void lane_enter(struct lane *v, struct leg *l)
+{
+    *(v->front ? &v->back->behind : &v->front) = l;
+    v->back = l;
 }
 
 /* router_unit: how many flits of w move at once. */
@@ -48,23 +84,62 @@ static inline int32_t router_unit(const struct routers *g, const struct worm *w)
 static inline int router_out(const struct routers *g, const struct lane *v,
                              const struct route_option *o)
 {
-    const struct net *n = g->fabric.net;
-    return o ? net_resource(n, o->link) : net_ejection(n, v->front->worm->flight->m->dst);
+    return o ? net_resource(g->fabric.net, o->link) : g->sink + v->front->worm->route.node;
 }
 
 /* router_channels: the channels of option o of lane v's front; o NULL: out of the network. Returns
  * how many from *first on. */
 static inline int router_channels(const struct lane *v, const struct route_option *o, int *first)
 {
-    *first = o ? o->first : v->out_first;
-    return o ? o->count : v->out_count;
+    *first = o ? o->first : v->first;
+    return o ? o->count : v->count;
+}
+
+/* router_bit: number i in a set of inputs or outputs of a router, in which those above the last bit
+ * are all of them. */
+static inline uint64_t router_bit(uint32_t i) { return i < 64 ? UINT64_C(1) << i : ~UINT64_C(0); }
+
+/* router_waits: whether the front of v still has to send its head. */
+static inline bool router_waits(const struct lane *v)
+{
+    return v->state == LANE_ASKING || (v->state == LANE_SENDING && v->front->ahead->sent == 0);
 }
 
 /* router_looks: whether the way of v's front depends on loads when it is found, an event of its own
  * before that in which the head asks. */
 static inline bool router_looks(const struct routers *g, const struct lane *v)
 {
-    return g->routing->by_load && (!g->routing->at_source || v->front->worm->route.channel < 0);
+    return g->looks_on || (g->looks && v->front->worm->route.channel < 0);
+}
+
+/* router_after: the place of a number after `turn`, in unsigned arithmetic that wraps. */
+static inline uint32_t router_after(uint32_t number, uint32_t turn) { return number - turn; }
+
+/* router_input, router_output: the number of FIFO or channel v among those of its router's inputs,
+ * its outputs: turns are round robin by these. */
+static inline uint32_t router_input(const struct routers *g, const struct lane *v)
+{
+    return v->of->in * g->nchannel + (uint32_t)v->channel;
+}
+static inline uint32_t router_output(const struct routers *g, const struct lane *v)
+{
+    return v->of->out * g->nchannel + (uint32_t)v->channel;
+}
+
+/* router_next_channel: the channel after v's, round. */
+static inline int router_next_channel(const struct routers *g, const struct lane *v)
+{
+    return (uint32_t)v->channel + 1 < g->nchannel ? v->channel + 1 : 0;
+}
+
+/* router_may_hold: whether w may be given channel v. A worm that spreads over two channels and is
+ * not the first in the second cannot turn to the escape channels, so that those above them are
+ * given to packets that fit (Ma, Enright Jerger and Wang 2012), or when empty. */
+static inline bool router_may_hold(const struct routers *g, const struct lane *v,
+                                   const struct worm *w)
+{
+    if (!g->fits || v->channel < g->routing->escape || v->in == v->out) return true;
+    return g->buffer - (v->in - v->out) >= w->flits;
 }
 
 #endif

@@ -14,6 +14,9 @@ struct lane *router_lanes_make(struct routers *g, int p)
         places ? TAKE(n->arena, size_product((size_t)count, (size_t)places), struct stay) : NULL;
     for (int i = 0; i < count; i++) {
         o->lane[i].port = p;
+        o->lane[i].of = o;
+        o->lane[i].option = &o->lane[i].only;
+        o->lane[i].room = 1;
         o->lane[i].channel = (int16_t)i;
         if (ring) o->lane[i].stay = ring + i * places;
     }
@@ -34,8 +37,7 @@ struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v)
     v->owner = l;
     /* The sink has no FIFO: it takes what comes. */
     if (net_is_ejection(g->fabric.net, v->port)) return l;
-    *(v->front ? &v->back->behind : &v->front) = l;
-    v->back = l;
+    lane_enter(v, l);
     return l;
 }
 

@@ -126,7 +126,8 @@ static void ports_make(struct routers *g)
 {
     struct net *n = g->fabric.net;
     const struct topology *t = n->topology;
-    uint32_t *leaving = TAKE(n->arena, t->nrouter, uint32_t);
+    uint32_t *leaving = TAKE(n->arena, t->nrouter, uint32_t),
+             *coming = TAKE(n->arena, t->nrouter, uint32_t), most = 0;
     for (int i = 0; i < n->nresource; i++) {
         struct port *p = &g->port[i];
         int port;
@@ -143,7 +144,9 @@ static void ports_make(struct routers *g)
             if (n->wire) p->wire = n->wire[i - n->nnode];
         }
         if (p->from >= 0) p->out = leaving[p->from]++;
+        if (p->to >= 0 && ++coming[p->to] > most) most = coming[p->to];
     }
+    g->active = TAKE(n->arena, size_product(most, (size_t)g->fabric.nchannel), struct lane *);
 }
 
 /* Others' traffic, as packet_occupied. */
@@ -172,6 +175,17 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     g->strict = n->routing->rule == ROUTING_BOOKSIM_MIN_ADAPT;
     g->iterations = n->machine->network.allocator_iterations;
     g->single = g->iterations == 1 || !g->priority;
+    g->tau = n->tau;
+    g->credit = n->credit;
+    g->setup = n->setup;
+    g->reach = n->tau - n->setup;
+    g->pause = n->allocation;
+    g->buffer = g->fabric.buffer;
+    g->nchannel = (uint32_t)g->fabric.nchannel;
+    g->sink = net_ejection(n, 0);
+    g->fits = n->routing->fits;
+    g->looks = n->routing->by_load;
+    g->looks_on = g->looks && !n->routing->at_source;
     g->even = !n->link_rate && n->ejection.flit == n->link.flit;
     /* A buffer, and what may be known to come. */
     while (g->ring + 1 < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
