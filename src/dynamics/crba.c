@@ -3,6 +3,7 @@
 #include "dynamics/dynamics.h"
 #include "dynamics/revolute.h"
 #include "dynamics/work_count.h"
+#include "linalg/cholesky.h"
 
 /* Composite inertias (nbody), tip to base.
  * A composite is all that hangs at a joint, taken as one rigid body (physics 2.3). */
@@ -65,42 +66,6 @@ void crba(struct dynamics *d, const real *q, real *mass, struct work *w)
     for (size_t k = 0; k < (size_t)d->nu * (size_t)d->nu; k++) mass[k] = 0;
     for (int i = 0; i < d->nbody; i++) fill_rows(d, i, &c[i], mass);
     arena_release(d->arena, mark);
-}
-
-/* Dense Cholesky, lower triangle in place; false when a pivot is not positive.
- * The textbook form, as a baseline: n^3 / 3, whatever the tree. */
-static bool cholesky(int n, real *m)
-{
-    for (int i = 0; i < n; i++) {
-        real *row = m + (size_t)i * n;
-        for (int j = 0; j <= i; j++) {
-            const real *other = m + (size_t)j * n;
-            real s = row[j];
-            for (int k = 0; k < j; k++) s -= row[k] * other[k];
-            /* Off the diagonal a division, on it the root. */
-            if (j < i)
-                row[j] = s / other[j];
-            else if (!(s > 0))
-                return false;
-            else
-                row[i] = real_sqrt(s);
-        }
-    }
-    return true;
-}
-
-/* L y = x, then L^T x = y, in place. */
-static void cholesky_solve(int n, const real *m, real *x)
-{
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < i; k++) x[i] -= m[(size_t)i * n + k] * x[k];
-        x[i] /= m[(size_t)i * n + i];
-    }
-    /* By columns of L^T, which are rows of L. */
-    for (int i = n - 1; i >= 0; i--) {
-        x[i] /= m[(size_t)i * n + i];
-        for (int k = 0; k < i; k++) x[k] -= m[(size_t)i * n + k] * x[i];
-    }
 }
 
 /* The velocity before u-index k on the path to the root (-1: none), for L^T D L along the tree
@@ -171,8 +136,7 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
         if (good) sparse_solve(n, up, mass, x, &own);
     } else {
         /* The baseline that ignores the tree. */
-        good = cholesky(n, mass);
-        if (good) cholesky_solve(n, mass, x);
+        good = cholesky_answer(n, mass, x, d->arena);
         /* Counted by formula: the inner loops would cost more to count than to run. */
         uint64_t m = (uint64_t)n;
         own.flop = m * (m + 1) * (2 * m + 1) / 6 - m * (m + 1) / 2 + 2 * m * (m - 1);

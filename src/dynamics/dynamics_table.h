@@ -39,6 +39,8 @@ struct dynamics_totals {
 
 enum { POSE_NUMBERS = 24 };
 
+struct held; /* a model in a state, in some precision; opaque */
+
 struct dynamics_type {
     const char *name;            /* "float", "double", "quad" */
     double epsilon;
@@ -46,6 +48,11 @@ struct dynamics_type {
     /* inverse: tau (nu) for s->qdd, loops cut open: what actuators and springs do together. */
     void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch,
                     double *tau, struct work *w);
+
+    /* hold, inverse_held: inverse for many accelerations qdd (nu) of one state: bodies' constants
+     * and the state in this precision are made once, in `a`; no work is counted. */
+    struct held *(*hold)(const struct model *m, const struct state *s, struct arena *a);
+    void (*inverse_held)(struct held *h, const double *qdd, double *tau);
 
     /* forward: qdd (nu) for s->tau plus springs; lambda (nrow) and report may be NULL. False: the
      * method broke down (singular pivot) or does not apply (constraint forces with massless

@@ -54,6 +54,32 @@ static void inverse(const struct model *m, const struct state *s, struct arena *
     arena_release(scratch, mark);
 }
 
+/* A problem that is solved again and again. */
+struct held {
+    struct problem p;
+    real *tau; /* (nu) before they are rounded */
+};
+
+static struct held *hold(const struct model *m, const struct state *s, struct arena *a)
+{
+    struct held *h = TAKE(a, 1, struct held);
+    struct work w = {0};
+    h->p = problem_take(m, s, a, &w);
+    h->p.d->at_rest = s->at_rest;
+    h->tau = TAKE(a, m->nu, real);
+    return h;
+}
+
+/* What inverse does, with other accelerations. */
+static void inverse_held(struct held *h, const double *qdd, double *tau)
+{
+    struct problem *p = &h->p;
+    struct work w = {0};
+    for (int i = 0; i < p->d->nu; i++) p->ud[i] = (real)qdd[i];
+    rnea(p->d, p->q, p->u, p->ud, h->tau, &w);
+    to_double(tau, h->tau, p->d->nu);
+}
+
 /* Which algorithm; all of them answer the same question. */
 static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda,
                   struct cfa_report *report, struct work *w)
@@ -210,6 +236,8 @@ const struct dynamics_type dynamics_type_here = {
     .name = REAL_BITS == 32 ? "float" : REAL_BITS == 64 ? "double" : "quad",
     .epsilon = (double)REAL_EPSILON,
     .inverse = inverse,
+    .hold = hold,
+    .inverse_held = inverse_held,
     .forward = forward,
     .mass_matrix = mass_matrix,
     .wrenches = wrenches,

@@ -44,22 +44,29 @@ static void transform(struct forward *f, int i, bool transposed, twice *y)
 }
 
 /* y = S^-1 x for the symmetric positive definite `about` of a body, by Cholesky's factors without
- * roots (L D L^T): roots in twice the digits would be expensive. */
+ * roots (L D L^T): roots in twice the digits would be expensive. Zeros at the beginning of a row
+ * stay zeros in its factor, so that nothing is computed with them: an inertia is a block of three
+ * rows at most, and a mass. */
 static void divide(const real *about, twice *y)
 {
     twice L[SQUARE], D[SPACE];
+    int first[SPACE]; /* of each row: where it begins */
     for (int i = 0; i < SPACE; i++) {
-        for (int j = 0; j <= i; j++) {
+        for (first[i] = 0; first[i] < i && about[SPACE * i + first[i]] == 0;) first[i]++;
+        for (int j = first[i]; j <= i; j++) {
             twice sum = about[SPACE * i + j];
-            for (int k = 0; k < j; k++) sum -= L[SPACE * i + k] * D[k] * L[SPACE * j + k];
+            for (int k = first[i] > first[j] ? first[i] : first[j]; k < j; k++)
+                sum -= L[SPACE * i + k] * D[k] * L[SPACE * j + k];
             if (i == j) D[i] = sum;
             else L[SPACE * i + j] = sum / D[j];
         }
-        for (int k = 0; k < i; k++) y[i] -= L[SPACE * i + k] * y[k];
+        for (int k = first[i]; k < i; k++) y[i] -= L[SPACE * i + k] * y[k];
     }
     for (int i = 0; i < SPACE; i++) y[i] /= D[i];
+    /* By rows of L^T, whose numbers stand below the diagonal of L. */
     for (int i = SPACE - 1; i >= 0; i--)
-        for (int k = i + 1; k < SPACE; k++) y[i] -= L[SPACE * k + i] * y[k];
+        for (int k = i + 1; k < SPACE; k++)
+            if (i >= first[k]) y[i] -= L[SPACE * k + i] * y[k];
 }
 
 /* y = I^-1 y, I = shift about shift^T; shift is a unit matrix plus a block whose square is zero, so

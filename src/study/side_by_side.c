@@ -73,7 +73,8 @@ static bool read_all(int fd, void *data, size_t n)
 static _Noreturn void work(const struct crew *c, int answers)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (int i; (i = atomic_fetch_add(c->next, 1)) < c->p->n;) {
+    for (int at; (at = atomic_fetch_add(c->next, 1)) < c->p->n;) {
+        const int i = c->p->turn ? c->p->turn[at] : at;
         struct head h = {.piece = i};
         const void *data = NULL;
         err_clear(&h.error);

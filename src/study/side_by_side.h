@@ -10,6 +10,8 @@
 /* What is done piece by piece. */
 struct pieces {
     int n;
+    const int *turn; /* (n) the pieces as they are begun, so that long ones do not end last; NULL:
+                        in order */
     void *context;
     /* make: piece i, in a worker process: its result as *bytes at *data, which stay until the next
      * call. Nothing else that it changes is seen by anybody. */

@@ -77,6 +77,19 @@ static bool take_scene(void *context, int i, const void *data, size_t bytes, str
     return true;
 }
 
+/* The scenes by their bodies, the largest first: one of them takes as long as all small ones. */
+static int *largest_first(const struct stability_scene *scene, int n, struct arena *a)
+{
+    int *turn = TAKE(a, n, int);
+    for (int i = 0; i < n; i++) {
+        int at = i;
+        for (; at > 0 && scene[turn[at - 1]].spec.nbody < scene[i].spec.nbody; at--)
+            turn[at] = turn[at - 1];
+        turn[at] = i;
+    }
+    return turn;
+}
+
 /* All scenes; rows are plain structs, so they travel between processes as they are. */
 static bool measure_scenes(struct stability_report *r, const struct stability_scene *scene, int n,
                            const struct stability_options *o, struct err *e)
@@ -84,7 +97,7 @@ static bool measure_scenes(struct stability_report *r, const struct stability_sc
     struct making k = {.scene = scene, .n = n, .most_bodies = o->most_bodies, .report = r};
     k.part = (struct stability_report){.arena = arena_create()};
     k.progress = progress_make("scenes", n, o->quiet);
-    const struct pieces p = {n, &k, make_scene, take_scene};
+    const struct pieces p = {n, largest_first(scene, n, k.part.arena), &k, make_scene, take_scene};
     const bool good = side_by_side(&p, o->workers, e);
     progress_end(&k.progress);
     arena_destroy(k.part.arena);

@@ -23,6 +23,20 @@ enum {
     FEW_BODIES = 1000 /* passes of refinement; fewer where many bodies make them long */
 };
 
+/* A trial that was made: rows that are the same program share it, with what is measured of it. */
+struct known {
+    struct kernel_spec kernel; /* as it ran */
+    struct trial trial;        /* of its arrays qdd alone */
+    bool measured;
+    double forces, power;      /* residual_of */
+};
+
+enum { MOST_KNOWN = 32 };
+struct known_list {
+    int n;
+    struct known item[MOST_KNOWN];
+};
+
 /* The scene that all rows are judged by, with its reference in quad precision. */
 struct judge {
     struct stability_report *report;
@@ -33,6 +47,9 @@ struct judge {
     double *reference;   /* (nu) */
     /* (nu) joint forces of the reference by inverse dynamics in quad precision */
     double *right;
+    struct held *quad;   /* the scene in quad precision, for inverse dynamics */
+    struct known_list *known;
+    struct arena *kept;  /* what rows share; `a` is emptied after each */
     double force;        /* largest joint force with the right answer: the residual's scale */
     double condition;
 };
@@ -42,16 +59,6 @@ static bool quad_forward(const struct model *m, const struct state *s, struct ar
 {
     struct work w = {0};
     return dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w);
-}
-
-/* Joint forces of the accelerations qdd in quad precision. */
-static void quad_inverse(const struct model *m, const struct state *s, double *qdd, struct arena *a,
-                         double *tau)
-{
-    struct work w = {0};
-    struct state with = *s;
-    with.qdd = qdd;
-    dynamics_type_of(PRECISION_QUAD)->inverse(m, &with, a, tau, &w);
 }
 
 /* Condition: how much the accelerations change, relative to a relative change of 1e-10 of
@@ -78,20 +85,19 @@ static double condition_of(const struct judge *j)
 /* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force,
  * and in *power what they do on the motion, u . M (qdd - reference), over j->force sum |u|. The
  * answer's own rounding is part of both. */
-static double residual_of(const struct judge *j, double *qdd, double *power)
+static double residual_of(const struct judge *j, const double *qdd, double *power)
 {
     const struct model *m = j->m;
     struct arena_mark mark = arena_mark(j->a);
-    struct state s = *j->s;
     double *tau = TAKE(j->a, m->nu, double), largest = 0, rates = 0;
     const double *right = j->right;
     /* Two inverse dynamics in quad precision: their difference has M alone, without bias forces. */
-    quad_inverse(m, &s, qdd, j->a, tau);
+    dynamics_type_of(PRECISION_QUAD)->inverse_held(j->quad, qdd, tau);
     *power = 0;
     for (int i = 0; i < m->nu; i++) {
         largest = fmax(largest, fabs(tau[i] - right[i]));
-        *power += s.qd[i] * (tau[i] - right[i]);
-        rates += fabs(s.qd[i]);
+        *power += j->s->qd[i] * (tau[i] - right[i]);
+        rates += fabs(j->s->qd[i]);
     }
     *power = rates > 0 && j->force > 0 ? fabs(*power) / (j->force * rates) : NAN;
     arena_release(j->a, mark);
@@ -104,26 +110,25 @@ static double force_of(const struct judge *j)
 {
     const struct model *m = j->m;
     struct arena_mark mark = arena_mark(j->a);
-    struct state s = *j->s;
-    double *tau = TAKE(j->a, m->nu, double), largest = 0;
-    struct work w = {0};
-    s.qdd = TAKE(j->a, m->nu, double);
-    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
-    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fmax(fabs(tau[i]), fabs(s.tau[i])));
+    double *tau = TAKE(j->a, m->nu, double), *zero = TAKE(j->a, m->nu, double), largest = 0;
+    dynamics_type_of(PRECISION_QUAD)->inverse_held(j->quad, zero, tau);
+    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fmax(fabs(tau[i]), fabs(j->s->tau[i])));
     arena_release(j->a, mark);
     return largest;
 }
 
 /* Grades a row and fills in what is measured the same way for every algorithm. With loops,
  * forces do not follow from accelerations alone: the algorithm's own residual stays. */
-static void finish_row(const struct judge *j, struct stability_row *x, double *qdd,
-                       double own_residual, bool single)
+static void finish_row(const struct judge *j, struct stability_row *x, const double *qdd,
+                       double own_residual, bool single, struct known *known)
 {
     row_grade(x, trial_error(qdd, j->reference, j->m->nu), single);
     x->residual = own_residual;
     if (isfinite(x->error)) {
-        double forces = residual_of(j, qdd, &x->energy_drift);
-        if (j->m->nloop == 0) x->residual = forces;
+        if (!known->measured) known->forces = residual_of(j, qdd, &known->power);
+        known->measured = true;
+        x->energy_drift = known->power;
+        if (j->m->nloop == 0) x->residual = known->forces;
     }
     x->condition = j->condition;
 }
@@ -142,7 +147,8 @@ static void serial_row(const struct judge *j, enum forward_method method, enum p
     }
     if (method == FORWARD_CFA_ROBUST) x->refinements = f.refined;
     if (f.fell_back) text_copy(x->reason, sizeof x->reason, "solved by articulated bodies instead");
-    finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT);
+    struct known once = {0};
+    finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT, &once);
 }
 
 static const struct variant {
@@ -186,9 +192,31 @@ static const struct variant {
      1, false, false},
 };
 
+/* One trial, or the one that another row made of the same program: what a run may switch on
+ * afterwards is no part of it. */
+static struct known *known_trial(const struct judge *j, const struct run_spec *spec)
+{
+    struct known_list *list = j->known;
+    struct kernel_spec kernel = spec->kernel;
+    kernel.refinement = REFINEMENT_AS_GIVEN;
+    for (int i = 0; i < list->n; i++)
+        /* Structs are compared as bytes: padding that differs would only cost a trial. */
+        if (memcmp(&list->item[i].kernel, &kernel, sizeof kernel) == 0) return &list->item[i];
+    const struct trial t = trial_run(spec, j->m, j->s, j->a);
+    /* A list that is full goes on with its last place. */
+    struct known *k = &list->item[list->n < MOST_KNOWN ? list->n++ : MOST_KNOWN - 1];
+    *k = (struct known){.kernel = kernel, .trial = t};
+    k->trial.tau = k->trial.lambda = k->trial.qdd = NULL;
+    k->trial.finish_ps = NULL;
+    if (!t.answered) return k;
+    k->trial.qdd = TAKE(j->kept, j->m->nu, double);
+    memcpy(k->trial.qdd, t.qdd, (size_t)j->m->nu * sizeof *t.qdd);
+    return k;
+}
+
 /* A variant as a run on a crossbar with a body, or several, per processor. Then as a run would
  * do it: corrections are switched on while the residual asks for them (trust.h). */
-static struct trial variant_trial(const struct judge *j, const struct variant *v,
+static struct known *variant_trial(const struct judge *j, const struct variant *v,
                                   enum precision precision)
 {
     /* Enough ranks for every phase of the kernel; a block of bodies each in large scenes. */
@@ -210,9 +238,9 @@ static struct trial variant_trial(const struct judge *j, const struct variant *v
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
     static const struct job_omit nothing;
-    struct trial t = trial_run(&spec, j->m, j->s, j->a);
-    while (trust_refine(&spec, j->m, &nothing, &(struct run_result){.residual = t.residual}))
-        t = trial_run(&spec, j->m, j->s, j->a);
+    struct known *t = known_trial(j, &spec);
+    while (trust_refine(&spec, j->m, &nothing, &(struct run_result){.residual = t->trial.residual}))
+        t = known_trial(j, &spec);
     return t;
 }
 
@@ -222,14 +250,15 @@ static void parallel_row(const struct judge *j, const struct variant *v)
 {
     struct stability_row *x =
         row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
-    struct trial t = variant_trial(j, v, v->precision);
-    if (!t.answered) {
-        text_copy(x->reason, sizeof x->reason, t.text);
+    struct known *known = variant_trial(j, v, v->precision);
+    const struct trial *t = &known->trial;
+    if (!t->answered) {
+        text_copy(x->reason, sizeof x->reason, t->text);
         return;
     }
-    x->refinements = t.refined;
-    finish_row(j, x, t.qdd, t.residual, v->precision == PRECISION_FLOAT);
-    if (t.condition > 0) x->growth = t.condition;
+    x->refinements = t->refined;
+    finish_row(j, x, t->qdd, t->residual, v->precision == PRECISION_FLOAT, known);
+    if (t->condition > 0) x->growth = t->condition;
 }
 
 /* --- why an answer is not good ---------------------------------------------------------------- */
@@ -251,8 +280,8 @@ static double quad_error(const struct judge *j, const struct stability_row *x)
         if (strcmp(x->algorithm, v->name) != 0 ||
             strcmp(x->precision, dynamics_type_of(v->precision)->name) != 0)
             continue;
-        struct trial t = variant_trial(j, v, PRECISION_QUAD);
-        if (t.answered) error = trial_error(t.qdd, j->reference, j->m->nu);
+        const struct trial *t = &variant_trial(j, v, PRECISION_QUAD)->trial;
+        if (t->answered) error = trial_error(t->qdd, j->reference, j->m->nu);
     }
     arena_release(j->a, mark);
     return error;
@@ -309,12 +338,38 @@ static void causes_tell(const struct judge *j, int first)
         if (j->report->row[i].status != STABILITY_OK) cause_tell(j, first, &j->report->row[i]);
 }
 
+/* Rows of serial algorithms. The sparse factorisation solves the same system as the dense one,
+ * which large scenes cannot afford; single precision of two algorithms shows the rest. */
+static void serial_rows(const struct judge *j)
+{
+    for (int k = 0; k < FORWARD_METHODS; k++) {
+        struct arena_mark mark = arena_mark(j->a);
+        if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && j->m->nu > MOST_DENSE)) continue;
+        serial_row(j, (enum forward_method)k, PRECISION_DOUBLE);
+        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT)
+            serial_row(j, (enum forward_method)k, PRECISION_FLOAT);
+        arena_release(j->a, mark);
+    }
+}
+
+/* Trees and loops are contracted, open chains solved: the table has variants for both. */
+static void parallel_rows(const struct judge *j)
+{
+    const bool branched = !j->m->is_chain || j->m->nloop > 0;
+    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
+        struct arena_mark mark = arena_mark(j->a);
+        if (variant_table[k].contraction == branched) parallel_row(j, &variant_table[k]);
+        arena_release(j->a, mark);
+    }
+}
+
 void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
                              const struct state *s, bool causes, struct arena *scratch)
 {
     const int first = r->nrow;
-    struct judge j = {
-        .report = r, .subject = subject, .m = m, .s = s, .a = scratch, .condition = NAN};
+    struct known_list known = {0};
+    struct judge j = {.report = r, .subject = subject, .m = m, .s = s, .a = scratch,
+                      .known = &known, .condition = NAN};
     j.reference = TAKE(scratch, m->nu + 1, double);
     j.right = TAKE(scratch, m->nu + 1, double);
     if (!quad_forward(m, s, scratch, j.reference)) {
@@ -323,25 +378,13 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
         return;
     }
     /* The yardsticks of all rows. */
+    j.kept = arena_create();
+    j.quad = dynamics_type_of(PRECISION_QUAD)->hold(m, s, j.kept);
     j.force = force_of(&j);
-    quad_inverse(m, s, j.reference, scratch, j.right);
+    dynamics_type_of(PRECISION_QUAD)->inverse_held(j.quad, j.reference, j.right);
     if (m->nbody <= MOST_MEASURED) j.condition = condition_of(&j);
-    /* Rows of serial algorithms. The sparse factorisation solves the same system as the dense
-     * one, which large scenes cannot afford; single precision of two algorithms shows the rest. */
-    for (int k = 0; k < FORWARD_METHODS; k++) {
-        struct arena_mark mark = arena_mark(scratch);
-        if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && m->nu > MOST_DENSE)) continue;
-        serial_row(&j, (enum forward_method)k, PRECISION_DOUBLE);
-        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT)
-            serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
-        arena_release(scratch, mark);
-    }
-    /* Trees and loops are contracted, open chains solved: the table has variants for both. */
-    bool branched = !m->is_chain || m->nloop > 0;
-    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
-        struct arena_mark mark = arena_mark(scratch);
-        if (variant_table[k].contraction == branched) parallel_row(&j, &variant_table[k]);
-        arena_release(scratch, mark);
-    }
+    serial_rows(&j);
+    parallel_rows(&j);
     if (causes) causes_tell(&j, first);
+    arena_destroy(j.kept);
 }

@@ -22,6 +22,23 @@ static void expect_less(const struct work *less, const struct work *more)
     assert_true(less->flop < more->flop && less->trig == more->trig && less->call == more->call);
 }
 
+/* What is held for many accelerations gives the same, however often it is asked, and nothing of the
+ * accelerations before: `tau` are the forces of the state's own. */
+static void held_is_the_same(struct scene *s, const struct dynamics_type *t, const double *tau)
+{
+    const int nu = s->model->nu;
+    struct held *held = t->hold(s->model, s->state, s->a);
+    struct state other = *s->state;
+    double *want = TAKE(s->a, nu + 1, double), *got = TAKE(s->a, nu + 1, double);
+    other.qdd = TAKE(s->a, nu + 1, double);
+    for (int i = 0; i < nu; i++) other.qdd[i] = 1 + i;
+    t->inverse(s->model, &other, s->a, want, &(struct work){0});
+    t->inverse_held(held, other.qdd, got);
+    expect_equal(got, want, nu);
+    t->inverse_held(held, s->state->qdd, got);
+    expect_equal(got, tau, nu);
+}
+
 /* Inverse and forward dynamics of one scene by every method in one precision, with velocity terms
  * and without. */
 static void compare(struct scene *s, enum precision precision)
@@ -36,6 +53,7 @@ static void compare(struct scene *s, enum precision precision)
     t->inverse(s->model, s->state, s->a, without, &less);
     expect_equal(without, with, nu);
     expect_less(&less, &more);
+    held_is_the_same(s, t, without);
     for (int m = 0; m < FORWARD_METHODS; m++) {
         more = less = (struct work){0};
         s->state->at_rest = false;

@@ -21,6 +21,7 @@ struct log {
     int dies, fails, refuses;
     int taken;
     uint64_t sum;
+    bool backwards; /* the last piece is begun first */
     char data[LARGEST];
 };
 
@@ -52,7 +53,9 @@ static bool take(void *context, int i, const void *data, size_t bytes, struct er
 
 static bool all(struct log *k, int workers, struct err *e)
 {
-    const struct pieces p = {PIECES, k, make, take};
+    int turn[PIECES];
+    for (int i = 0; i < PIECES; i++) turn[i] = PIECES - 1 - i;
+    const struct pieces p = {PIECES, k->backwards ? turn : NULL, k, make, take};
     err_clear(e);
     return side_by_side(&p, workers, e);
 }
@@ -65,13 +68,17 @@ static void results_do_not_depend_on_workers(void **state)
     static const int workers[] = {1, 2, 3, 7, 0, 1000};
     for (size_t w = 0; w < sizeof workers / sizeof *workers; w++) {
         static struct log k;
-        k = (struct log){-1, -1, -1, 0, 0, {0}};
+        k = (struct log){-1, -1, -1, 0, 0, false, {0}};
         assert_true(all(&k, workers[w], &e));
         assert_int_equal(k.taken, PIECES);
         if (w == 0) sum = k.sum;
         assert_true(k.sum == sum);
+        k = (struct log){-1, -1, -1, 0, 0, true, {0}};
+        assert_true(all(&k, workers[w], &e));
+        assert_int_equal(k.taken, PIECES);
+        assert_true(k.sum == sum);
     }
-    const struct pieces none = {0, NULL, make, take};
+    const struct pieces none = {0, NULL, NULL, make, take};
     assert_true(side_by_side(&none, 2, &e));
 }
 
@@ -82,15 +89,15 @@ static void errors_and_deaths_are_told(void **state)
     struct err e;
     for (int workers = 1; workers <= 3; workers++) {
         static struct log k;
-        k = (struct log){-1, 9, -1, 0, 0, {0}};
+        k = (struct log){-1, 9, -1, 0, 0, false, {0}};
         assert_false(all(&k, workers, &e));
         assert_string_equal(e.text, "piece 9 is bad");
         assert_int_equal(e.kind, ERR_DATA);
-        k = (struct log){-1, -1, 5, 0, 0, {0}};
+        k = (struct log){-1, -1, 5, 0, 0, false, {0}};
         assert_false(all(&k, workers, &e));
         assert_string_equal(e.text, "no room for piece 5");
         if (workers == 1) continue;
-        k = (struct log){12, -1, -1, 0, 0, {0}};
+        k = (struct log){12, -1, -1, 0, 0, false, {0}};
         assert_false(all(&k, workers, &e));
         assert_int_equal(e.kind, ERR_INTERNAL);
         assert_string_equal(e.text, "a worker process died before piece 13 was done");
