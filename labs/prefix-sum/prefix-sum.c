@@ -18,7 +18,7 @@ static void check(struct comm *c)
     int64_t n, right = 0;
     const double *x = comm_output(c, 0, &n);
     for (int64_t i = 0; i < n; i++) right += x[i] == (double)((i + 1) * (i + 2) / 2);
-    comm_error(c, "sums", n == comm_run_size(c) && right == n ? 0 : 1);
+    comm_error(c, "sum of a rank", n == comm_run_size(c) && right == n ? 0 : 1);
 }
 
 /* The cost of computing is the author's: none here, so that times are those of messages alone. */

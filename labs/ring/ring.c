@@ -57,7 +57,7 @@ static void check(struct comm *c)
 {
     int64_t n;
     const double *count = comm_output(c, 0, &n);
-    comm_error(c, "ranks that were there", n == 1 && count[0] == comm_run_size(c) ? 0 : 1);
+    comm_error(c, "number of ranks", n == 1 && count[0] == comm_run_size(c) ? 0 : 1);
 }
 
 /* The cost of computing is the author's: none in the ring, so that times are those of messages. */

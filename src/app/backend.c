@@ -18,6 +18,7 @@
 #include "app/verb.h"
 #include "base/memory.h"
 #include "run/real.h"
+#include "spec/run_label.h"
 #include "spec/task.h"
 #include "store/real_rows.h"
 
@@ -142,13 +143,13 @@ static void note(struct backend *b, const struct run_spec *spec, const struct re
     b->invalid += r->status == RUN_INVALID || r->status == RUN_FAILED;
     b->deadlock += r->status == RUN_DEADLOCK;
     if (r->status != RUN_OK)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody,
-                r->nrank, r->text);
+        fprintf(stderr, "mimdsim: %s%s: %s\n", spec->kernel.name, run_size(spec, r->nrank).s,
+                r->text);
     if (r->status == RUN_OK && !r->repeatable && !b->c->quiet)
         fprintf(stderr,
-                "mimdsim: %s, n = %d, P = %d: the answer differs from repetition to "
-                "repetition, within its tolerance\n",
-                spec->kernel.name, spec->model.nbody, r->nrank);
+                "mimdsim: %s%s: the answer differs from repetition to repetition, within its "
+                "tolerance\n",
+                spec->kernel.name, run_size(spec, r->nrank).s);
     if (r->oversubscribed && b->crowded++ == 0 && !b->c->quiet)
         fprintf(stderr, "mimdsim: %d ranks on %d processors: answers are right, times say little\n",
                 r->nrank, r->processors);

@@ -19,6 +19,7 @@
 #include "report/report.h"
 #include "report/report_document.h"
 #include "run/run.h"
+#include "spec/run_label.h"
 #include "store/store.h"
 
 static const char doc[] =
@@ -84,8 +85,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     struct paper *p = context;
     p->failed += r->status == RUN_FAILED;
     if (r->status != RUN_OK)
-        fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name,
-                spec->model.nbody, spec->nrank, r->text);
+        fprintf(stderr, "mimdsim: %s: %s%s: %s\n", spec->scenario, spec->kernel.name,
+                run_size(spec, spec->nrank).s, r->text);
     return store_put(p->store, spec, &p->order[spec - p->run], r, p->e);
 }
 

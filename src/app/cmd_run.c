@@ -21,6 +21,7 @@
 #include "base/memory.h"
 #include "run/interrupt.h"
 #include "run/run.h"
+#include "spec/run_label.h"
 #include "store/store.h"
 #include "store/swept.h"
 #include "study/model_file.h"
@@ -102,8 +103,8 @@ static void say_wrong(struct keep *k, const struct run_spec *spec, const struct 
     text_copy(k->reason, sizeof k->reason, reason);
     if (k->alike++ >= TOLD) k->untold++;
     else
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody,
-                spec->nrank, r->text);
+        fprintf(stderr, "mimdsim: %s%s: %s\n", spec->kernel.name, run_size(spec, spec->nrank).s,
+                r->text);
 }
 
 /* One result, in plan order: counted, told where it is no plain success, stored. Remarks that
@@ -122,16 +123,15 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
     if (r->alone[0] && k->alone++ == 0 && !k->quiet)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s: %s\n", spec->kernel.name,
-                spec->model.nbody, spec->nrank, k->spread ? "in one process" : "on one thread",
+        fprintf(stderr, "mimdsim: %s%s: %s: %s\n", spec->kernel.name,
+                run_size(spec, spec->nrank).s, k->spread ? "in one process" : "on one thread",
                 r->alone);
     if (run_result_refined(r) && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
-                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the "
-                "residual was %.2g\n",
-                spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
-                r->twice_added ? ", twice the digits" : "",
-                r->residual_before);
+                "mimdsim: %s%s: refinement switched on (%d inner, %d outer%s), the residual was "
+                "%.2g\n",
+                spec->kernel.name, run_size(spec, spec->nrank).s, r->inner_added, r->outer_added,
+                r->twice_added ? ", twice the digits" : "", r->residual_before);
     const bool stored = store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
     if (stored && !k->whole) atomic_fetch_add(&k->interrupt.stored, 1);
     return stored;

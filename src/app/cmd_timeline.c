@@ -19,6 +19,7 @@
 #include "report/trace.h"
 #include "run/run.h"
 #include "spec/identity.h"
+#include "spec/run_label.h"
 #include "store/store.h"
 
 static const char doc[] =
@@ -136,11 +137,13 @@ static bool from_database(struct shown *t)
     const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
     const char *const param[] = {wanted};
     t->store = arguments_database(t->common, "", t->e);
-    if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) || !store_query(t->store,
-                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, "
-                                  "n, P), status, text FROM run WHERE id = ifnull(?1, (SELECT "
-                                  "min(run_id) FROM span))",
-                                  1, param, NULL, take_first, t, t->e))
+    if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) ||
+        !store_query(
+            t->store,
+            "SELECT id, format('%s on %s%s, P = %d', kernel, machine, iif(nu > 0 OR id IN (SELECT "
+            "run_id FROM v_setting WHERE key = 'program.n'), format(', n = %d', n), ''), P), "
+            "status, text FROM run WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))",
+            1, param, NULL, take_first, t, t->e))
         return false;
     if (!t->run_id)
         return err_set(t->e, ERR_NO_INPUT,
@@ -206,8 +209,8 @@ static bool from_scenario(struct shown *t)
     struct run_spec spec = plan.run[0];
     /* Recording is switched on whatever the scenario says. */
     spec.record.spans = spec.record.path = true;
-    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name,
-             spec.machine.name, spec.model.nbody, spec.nrank);
+    snprintf(t->title, sizeof t->title, "%s on %s%s", spec.kernel.name, spec.machine.name,
+             run_size(&spec, spec.nrank).s);
     if (plan.nrun > 1 && !t->common->quiet)
         fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
     bool ok = run_one(&spec, t->arena, &t->result, t->e);

@@ -110,8 +110,8 @@ static void print_sentences(const struct run_spec *spec, const struct why *w, FI
     const int n = sums_of(w, sum);
     struct text name = {0};
     run_label(spec, &name);
-    fprintf(out, "%s on %s, n = %d, P = %d: %s, of which\n", spec->kernel.name,
-            name.s, spec->model.nbody, spec->nrank,
+    fprintf(out, "%s on %s%s: %s, of which\n", spec->kernel.name, name.s,
+            run_size(spec, spec->nrank).s,
             why_duration((double)w->run.makespan_ps, time, sizeof time));
     text_free(&name);
     /* Three causes say most of it; the table has the others. */

@@ -32,6 +32,13 @@ void run_label_made(const struct run_spec *run, const char *changes, struct text
  * machine with what was changed. */
 void run_label(const struct run_spec *run, struct text *out);
 
+/* run_size: ", n = 16, P = 4" of a run on `nrank` ranks, for titles and messages; without n where
+ * its program has neither bodies nor a parameter n. */
+struct run_size {
+    char s[48];
+};
+struct run_size run_size(const struct run_spec *run, int nrank);
+
 /* machine_fingerprint: LABEL_KEY_LENGTH digits of the SHA-256 of the machine's settings in `config`
  * (run_spec's config_text), without the level of the network and its tolerance, which ask something
  * of a machine: runs that have the same one ran on the same machine. */

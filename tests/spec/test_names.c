@@ -144,6 +144,26 @@ static void settings_are_numbers_in_base_units(void **state)
     is_word("program.method", "");
 }
 
+/* n only where it says something: of bodies, or of a parameter that is called so. */
+static void sizes_name_n_where_there_is_one(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct run_spec run;
+    run_spec_defaults(&run, a);
+    run.model.nbody = 134217728;
+    assert_string_equal(run_size(&run, 1048576).s, ", n = 134217728, P = 1048576");
+    text_copy(run.kernel.name, sizeof run.kernel.name, "pingpong");
+    assert_string_equal(run_size(&run, 2).s, ", P = 2");
+    run.kernel.own = true;
+    assert_string_equal(run_size(&run, 2).s, ", P = 2");
+    run.program.parameters = "bytes = 8 B\nrun = 3\n";
+    assert_string_equal(run_size(&run, 2).s, ", P = 2");
+    run.program.parameters = "bytes = 8 B\nn = 134217728\n";
+    assert_string_equal(run_size(&run, 3).s, ", n = 134217728, P = 3");
+    arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +173,7 @@ int main(void)
         cmocka_unit_test(a_given_name_goes_before_all),
         cmocka_unit_test(questions_are_no_part_of_a_machine),
         cmocka_unit_test(settings_are_numbers_in_base_units),
+        cmocka_unit_test(sizes_name_n_where_there_is_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
