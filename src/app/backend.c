@@ -81,6 +81,16 @@ static bool refuse_ranks(const struct plan *p, int nrank, struct err *e)
                    range, nrank, nrank == 1 ? "process" : "processes", least, nrank);
 }
 
+/* Whether the runs have their machine alone; of `jobs:` all or none share it. */
+static bool is_alone(const struct plan *p, struct err *e)
+{
+    return p->run[0].jobs == NULL ||
+           err_set(e, ERR_CONFIG,
+                   "job '%s' shares its machine with others, which a real run cannot: take the "
+                   "scenario without 'jobs'",
+                   p->run[0].job.name);
+}
+
 /* --- the table -------------------------------------------------------------------------------- */
 
 /* Columns as wide as the numbers of a run from a microsecond to some seconds need them. Times are
@@ -183,7 +193,8 @@ static bool run_tasks(struct backend *b, const struct plan *p, struct err *e)
     struct run_spec *task = memory_zeroed((size_t)p->nrun, sizeof *task);
     int *index = memory_zeroed((size_t)p->nrun, sizeof *index);
     const int n = choose(p, b->job->h.size, task, index);
-    bool ok = n > 0 || refuse_ranks(p, b->job->h.size, e);
+    bool ok = is_alone(p, e) && (n > 0 || refuse_ranks(p, b->job->h.size, e));
+    const bool all_begin = ok;
     b->job->started = true; /* all refuse alike: the job ends in order */
     struct host_comm *comm = ok ? host_comm_create(&b->job->h, e) : NULL;
     struct run_cache *cache = run_cache_create();
@@ -195,7 +206,6 @@ static bool run_tasks(struct backend *b, const struct plan *p, struct err *e)
         if (ok && b->c->json) json_array(&b->json);
         else if (ok) print_title();
     }
-    const bool all_begin = n > 0;
     for (int i = 0; i < n && ok; i++)
         ok = run_task(b, p, &p->run[index[i]], &task[i], comm, cache, e);
     if (!ok && all_begin) b->job->gone++; /* the others may wait for this one */

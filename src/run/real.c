@@ -267,11 +267,6 @@ static bool refuse(const struct run_spec *spec, int processes, struct err *e)
                        "kernels in one file; MPI programs run by their own mpicc and mpirun, which "
                        "mimdsim record times",
                        spec->kernel.name);
-    if (spec->jobs)
-        return err_set(e, ERR_CONFIG,
-                       "job '%s' shares its machine with others, which a real run cannot: take the "
-                       "scenario without 'jobs'",
-                       spec->job.name);
     if (spec->nrank != processes)
         return err_set(e, ERR_CONFIG, "a run of %d ranks on %d processes", spec->nrank, processes);
     return true;

@@ -262,6 +262,17 @@ refused() {
     grep -q 'background.load [0-9.]* %' figures/interference.provenance
     run ! grep -qE '[0-9][.][0-9]{4}' figures/interference.provenance
     [ "$(tail -n +2 figures/interference.csv | wc -l)" -eq 24 ]
+    # which job loads which link: all of a link's busy time, and never two jobs on one where each has its own part
+    works mimdsim plot s.db shares
+    sqlite3 :memory: '.import --csv figures/shares.csv s' "SELECT count(*) > 0, total(abs(whole - 1) > 1e-9 OR abs(top - busy) > 1e-9), sum(jobs > 1)
+        FROM (SELECT sum(of_link) AS whole, max(below + share) AS top, sum(share) AS busy, count(*) AS jobs FROM s GROUP BY panel, link)" >told
+    [[ $(cat told) == 1'|0.0|'[1-9]* ]]
+    sqlite3 :memory: '.import --csv figures/shares.csv s' "SELECT sum(n > 1) FROM (SELECT count(*) AS n FROM s WHERE panel_name LIKE '%groups' GROUP BY link)" >told
+    [ "$(cat told)" = 0 ]
+    # the bars are named in their own panel
+    sqlite3 :memory: '.import --csv figures/shares.csv s' "SELECT DISTINCT name FROM s" | while read -r name; do
+        grep -qF "$name" figures/shares.svg || { echo "no $name"; exit 1; }
+    done
     # nothing is run twice, and other seeds of the same rows agree
     works mimdsim interference s.yaml -o s.db --quiet
     sql_is s.db "SELECT count(*) FROM run" 46
@@ -281,6 +292,13 @@ refused() {
     scenario "${two[@]}"
     fails_with 78 mimdsim why s.yaml -o s.db
     stderr_says "job 'solver' shares it; take the scenario without 'jobs'"
+    works mimdsim run s.yaml -o s.db --quiet
+    fails_with 78 mimdsim why s.db 1
+    stderr_says "job 'solver' shares it; take the scenario without 'jobs'"
+    # before it is asked how many processes there are
+    fails_with 78 mimdsim run s.yaml --backend mpi -o r.db
+    stderr_is "mimdsim: job 'solver' shares its machine with others, which a real run cannot: take the scenario without 'jobs'"
+    [ ! -e r.db ]
     works mimdsim explain s.yaml
     stdout_says 'on one machine'
     stdout_says 'solver'

@@ -396,8 +396,7 @@ static void put_tables(struct fixture *f)
 {
     static const char *const ladder[] = {
         "scenario", "ladder", "at", "method", "rung", "ordinal", "quantity", "reference",
-        "relative_error", "host_s",
-        "machine_ps", "status", "family", "text"};
+        "relative_error", "host_s", "machine_ps", "status", "family", "text"};
     static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
                                         "ordinal", "status",  "relative_error", "reason"};
     static const char *const left_out[] = {
@@ -450,10 +449,11 @@ static void put_tables(struct fixture *f)
     }
 }
 
-/* Of real runs only: figures.bats, attacks.bats (explain), jobs.bats (interference) draw them. */
+/* Of real runs only: figures.bats, attacks.bats (explain), jobs.bats (interference, shares) draw
+ * them. */
 static const char *const of_other_rows[] = {
-    "explain", "interference", "linkmap", "load", "pingpong", "roofline", "slack", "speedup",
-    "uncertainty", "why"};
+    "explain", "interference", "linkmap", "load", "pingpong", "roofline", "shares", "slack",
+    "speedup", "uncertainty",  "why"};
 static bool is_of_other_rows(const char *figure)
 {
     for (size_t k = 0; k < sizeof of_other_rows / sizeof *of_other_rows; k++)
