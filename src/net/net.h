@@ -95,9 +95,10 @@ void net_set_in_order(struct net *n, bool in_order);
  * order, without a path log; memory from `a`. */
 struct net *net_share(const struct net *n, void *context, struct arena *a);
 
-/* net_foresee: call early(m, step) shortly before m is delivered, with the meaning of sim_foresee.
- * Not every message is announced, and not on every level. Call it before any message is sent. */
-typedef void net_early_fn(const struct net_message *m, int step);
+/* net_foresee: call early(m) shortly before m is delivered. It may ask for memory, and must change
+ * nothing. Not every message is announced, and not on every level. Call it before any message is
+ * sent. */
+typedef void net_early_fn(const struct net_message *m);
 void net_foresee(struct net *n, net_early_fn *early);
 
 /* net_gather: from now on all that is to be looked at in one instant shares an event, and a message

@@ -40,6 +40,9 @@ struct link_level {
     struct flight *pool;
 };
 
+static void head_arrives(void *subject, uint64_t argument, sim_ps now);
+static void head_early(void *subject, uint64_t argument, int step);
+
 static bool link_create(struct net *n, struct err *e)
 {
     (void)e;
@@ -50,6 +53,7 @@ static bool link_create(struct net *n, struct err *e)
                       ? g->free
                       : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
     n->state = g;
+    sim_foresee(n->sim, head_arrives, head_early, 1);
     return true;
 }
 
@@ -70,6 +74,9 @@ static struct flight *flight_take(struct net *n)
     }
     struct flight *f = g->pool;
     g->pool = f->next;
+    /* For the next message: long unused ones are cold. */
+    __builtin_prefetch(g->pool);
+    __builtin_prefetch((const char *)g->pool + 64);
     return f;
 }
 
@@ -158,9 +165,7 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
         f->resource = net_resource(n, h.link);
         f->port = h.port;
     } else {
-        /* The message is needed next: it was last touched when it was sent. */
         f->resource = f->ejection;
-        for (int line = 0; line < 3; line++) __builtin_prefetch((const char *)f->m + 64 * line);
     }
     /* The key is the port through which the head entered the resource it leaves. */
     sim_at(n->sim, there, NET_LANE_HEAD, net_event_key(port, f->key), head_arrives, n,
@@ -237,16 +242,25 @@ static void link_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
-/* The event queue has asked for the flight before; the message is asked for when its head leaves
- * the last link. */
+/* The event queue has asked for the flight before. What its head needs next: the other line, the
+ * time of its resource; at the end of its way the message, last touched when it was sent. */
 static void head_early(void *subject, uint64_t argument, int step)
 {
     const struct net *n = subject;
+    const struct link_level *g = n->state;
     const struct flight *f = (const struct flight *)(uintptr_t)argument;
-    if (f->resource == f->ejection) n->early(f->m, step);
+    const bool last = net_is_ejection(n, f->resource);
+    if (step > 0) {
+        if (last) n->early(f->m);
+        return;
+    }
+    __builtin_prefetch(&f->slow);
+    __builtin_prefetch(&g->free[f->resource]);
+    for (int line = 0; last && line < 3; line++)
+        __builtin_prefetch((const char *)f->m + 64 * line);
 }
 
-void net_link_foresee(struct net *n) { sim_foresee(n->sim, head_arrives, head_early); }
+void net_link_foresee(struct net *n) { sim_foresee(n->sim, head_arrives, head_early, 2); }
 
 /* Others' traffic queues like a message, without one. */
 static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)

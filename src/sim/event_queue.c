@@ -21,6 +21,9 @@
  * hold only a few events. */
 enum { FIRST_CAPACITY = 8, INSERTION_MOST = 12 };
 
+/* FAR: so many events ahead the memory of an event is asked for. */
+enum { FAR = 8 };
+
 void event_queue_init(struct event_queue *q) { memset(q, 0, sizeof *q); }
 
 void event_queue_done(struct event_queue *q)
@@ -241,6 +244,16 @@ static void run_room(struct event_queue *q, uint32_t chunks)
     q->scratch = memory_take(q->key_capacity, sizeof *q->scratch);
 }
 
+/* What the first events of the next window are about: a window may be too short to ask in. */
+static inline void warm_up_next(const struct event_queue *q, int slot)
+{
+    const uint64_t later = q->full[0] & (~UINT64_C(1) << slot);
+    if (later == 0) return;
+    const struct event_chunk *c = q->wheel[0][__builtin_ctzll(later)].first;
+    for (uint32_t i = 0; i < FAR && i < c->count; i++)
+        __builtin_prefetch((const void *)(uintptr_t)c->event[i].argument);
+}
+
 /* Make a bucket of level 0 the run: its events stay where they are. */
 static void run_begin(struct event_queue *q, int slot)
 {
@@ -262,6 +275,7 @@ static void run_begin(struct event_queue *q, int slot)
     q->run_at = 0;
     q->run_count = n;
     keys_sort(q->key, q->scratch, n);
+    warm_up_next(q, slot);
 }
 
 /* The chunks of a run that is over go back. */
@@ -316,14 +330,14 @@ static inline bool run_first(const struct event_queue *q)
 }
 
 /* Records that events are about lie anywhere in memory, each reached through the one before: what
- * an event's argument points to is asked for FAR events ahead, the rest in two more steps. */
+ * an event's argument points to is asked for FAR events ahead, the rest in further steps. */
 static inline void warm_up(const struct event_queue *q)
 {
-    enum { FAR = 8, STEPS = 2, STEP = 3 };
+    enum { STEP = 3 };
     if (q->run_at + FAR < q->run_count)
         __builtin_prefetch((const void *)(uintptr_t)run_event(q, q->run_at + FAR)->argument);
     if (!q->foreseen) return;
-    for (int step = 0; step < STEPS; step++) {
+    for (int step = 0; step < q->steps; step++) {
         const uint32_t ahead = q->run_at + FAR - (uint32_t)(step + 1) * STEP;
         if (ahead >= q->run_count) continue;
         const struct event *e = run_event(q, ahead);

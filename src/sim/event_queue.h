@@ -71,6 +71,7 @@ struct event_queue {
     uint32_t heap_count, heap_capacity;
     sim_action *foreseen;         /* see sim_foresee; NULL: none */
     sim_early *early;
+    int steps;                    /* how often each event is announced */
     uint64_t full[WHEEL_LEVELS]; /* bit per bucket that is not empty */
     struct event_chain wheel[WHEEL_LEVELS][WHEEL_SLOTS];
     struct event_chunk *pool; /* chunks not in use */

@@ -50,10 +50,11 @@ void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action 
     event_queue_push(&s->queue, &e);
 }
 
-void sim_foresee(struct sim *s, sim_action *action, sim_early *early)
+void sim_foresee(struct sim *s, sim_action *action, sim_early *early, int steps)
 {
     s->queue.foreseen = action;
     s->queue.early = early;
+    s->queue.steps = steps;
 }
 
 static inline bool dispatch(struct sim *s, sim_ps last)

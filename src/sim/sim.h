@@ -31,10 +31,11 @@ void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action 
             void *subject, uint64_t argument);
 
 /* sim_foresee: from now on call early(subject, argument, step) for events with `action` shortly
- * before they are due: step 0 a few events ahead, step 1 one or two events ahead. It may ask for
- * memory that the event will need, and must change nothing. Not every event is announced. */
+ * before they are due, `steps` (1 or 2) times: step 0 a few events ahead, step 1 one or two events
+ * ahead. It may ask for memory that the event will need, and must change nothing. Not every event
+ * is announced. */
 typedef void sim_early(void *subject, uint64_t argument, int step);
-void sim_foresee(struct sim *s, sim_action *action, sim_early *early);
+void sim_foresee(struct sim *s, sim_action *action, sim_early *early, int steps);
 
 /* sim_step: dispatch the earliest event; false when there is none, or none that is due by PS_LAST
  * (picoseconds.h). */

@@ -74,17 +74,10 @@ bool arrivals_step(struct world *w)
     return a->n > 0 && a->n < MOST && w->ready_count == 0 && sim_step_before(w->sim, a->until);
 }
 
-/* A message is about to arrive: where its receiver keeps what it waits for, then the first of that.
- * Otherwise each arrival among many ranks waits for memory twice. */
-static void foresee(const struct net_message *m, int step)
+/* A message is about to arrive: where its receiver keeps what it waits for. */
+static void foresee(const struct net_message *m)
 {
-    const struct vp *to = ((const struct message *)m)->to;
-    if (step == 0) {
-        __builtin_prefetch(&to->stages);
-    } else if (to->posted) {
-        __builtin_prefetch(to->posted);
-        __builtin_prefetch((const char *)to->posted + 64);
-    }
+    __builtin_prefetch(&((const struct message *)m)->to->stages);
 }
 
 void arrivals_foresee(struct world *w) { net_foresee(w->net, foresee); }

@@ -230,19 +230,22 @@ static void due(void *subject, uint64_t argument, sim_ps now)
 static void only_the_foreseen_action_is_announced(void **state)
 {
     (void)state;
-    struct foreseen f = {.sim = sim_create()}, plain = {.sim = f.sim};
-    sim_foresee(f.sim, due, announced);
-    /* in one window of the queue, ahead of the present; every other one of another action */
-    for (uint64_t k = 0; k < 200; k++)
-        sim_at(f.sim, 5000 + (sim_ps)k, 0, 0, k % 2 ? nothing : due, k % 2 ? (void *)&plain : &f,
-               k);
-    while (sim_step(f.sim)) {
+    for (int steps = 1; steps <= 2; steps++) {
+        struct foreseen f = {.sim = sim_create()}, plain = {.sim = f.sim};
+        sim_foresee(f.sim, due, announced, steps);
+        /* in one window of the queue, ahead of the present; every other one of another action */
+        for (uint64_t k = 0; k < 200; k++)
+            sim_at(f.sim, 5000 + (sim_ps)k, 0, 0, k % 2 ? nothing : due,
+                   k % 2 ? (void *)&plain : &f, k);
+        while (sim_step(f.sim)) {
+        }
+        assert_int_equal(f.late, 100);
+        assert_true(f.early[0] > 80 && f.early[0] <= 100);
+        if (steps > 1) assert_true(f.early[1] > 80 && f.early[1] <= 100);
+        else assert_int_equal(f.early[1], 0);
+        assert_true(plain.early[0] == 0 && plain.early[1] == 0);
+        sim_destroy(f.sim);
     }
-    assert_int_equal(f.late, 100);
-    assert_true(f.early[0] > 80 && f.early[1] > 80);
-    assert_true(f.early[0] <= 100 && f.early[1] <= 100);
-    assert_true(plain.early[0] == 0 && plain.early[1] == 0);
-    sim_destroy(f.sim);
 }
 
 /* --- what stops the program --- */
