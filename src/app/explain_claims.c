@@ -271,8 +271,14 @@ bool explain_claims(const struct common *c, const struct claim_rules *rules, uin
                     struct store *s, struct err *e)
 {
     struct inquest q = {.rules = rules, .seed = seed};
-    q.bench = (struct explain_bench){.common = c, .store = s, .arena = arena_create(), .e = e};
+    q.bench = (struct explain_bench){.common = c,
+                                     .store = s,
+                                     .arena = arena_create(),
+                                     .cache = run_cache_create(),
+                                     .e = e};
+    run_cache_repeat(q.bench.cache, true);
     bool ok = inquire(&q);
+    run_cache_destroy(q.bench.cache);
     arena_destroy(q.bench.arena);
     return ok;
 }

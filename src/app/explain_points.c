@@ -416,11 +416,27 @@ static void add_runs(struct batch *t, int request, const struct run_spec *from, 
 static bool run_batch(struct batch *t)
 {
     t->of[t->nspec] = -1;
-    bool ok = run_campaign(t->spec, NULL, t->nspec, NULL, t->bench->common->jobs, true, keep_result,
-                           t, t->bench->e);
+    struct explain_bench *b = t->bench;
+    bool ok =
+        run_campaign_again(t->spec, t->nspec, b->common->jobs, b->cache, keep_result, t, b->e);
     store_close(t->passing);
     text_free(&t->runs);
     return ok;
+}
+
+/* The runs at the nominal point, in this process: what ranks do is the same at every point, and
+ * workers, which are new in every batch, begin with it. What is wrong with a run shows there. */
+static void warm_up(struct explain_bench *b, struct explain_subject *s)
+{
+    for (int i = 0; i < s->nspec && !s->warm; i++) {
+        struct arena *a = arena_create();
+        struct run_result *ignored = TAKE(a, 1, struct run_result);
+        struct err refused;
+        err_clear(&refused);
+        run_sharing(&s->spec[i], NULL, b->cache, a, ignored, &refused);
+        arena_destroy(a);
+    }
+    s->warm = true;
 }
 
 /* All points in one campaign: workers are busy until the last run. */
@@ -433,8 +449,10 @@ bool explain_make(struct explain_bench *b, const struct explain_request *request
     /* Room for all runs of all points, though only those with the right operators are made. */
     t.spec = TAKE(a, most, struct run_spec);
     t.of = TAKE(a, most, int);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
+        warm_up(b, request[i].subject);
         add_runs(&t, i, request[i].subject->spec, request[i].subject->nspec, a);
+    }
     bool ok = run_batch(&t);
     arena_destroy(a);
     return ok;

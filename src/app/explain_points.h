@@ -10,6 +10,7 @@
 #include "app/explain_space.h"
 #include "app/verb.h"
 #include "report/claims.h"
+#include "run/run.h"
 #include "store/store.h"
 
 enum { EXPLAIN_MOST_RULES = 32 };
@@ -41,6 +42,7 @@ struct explain_subject {
     struct run_spec *spec; /* (nspec) at the nominal point */
     bool has[2];           /* whether there are runs with structured, with dense operators */
     char identity[65];     /* of runs and claims: points of another one are worth nothing */
+    bool warm; /* the bench's cache has what its runs share */
     int npoint, capacity;
     struct explain_point **slot; /* (capacity) open addressing by key */
 };
@@ -57,6 +59,7 @@ struct explain_bench {
     struct store *store;
     struct arena *arena; /* of all subjects and points */
     struct err *e;
+    struct run_cache *cache; /* what runs of all points share, owned by who makes the bench */
     int64_t last_id; /* of a stored point */
     int made;        /* points that were run by this program */
 };

@@ -192,7 +192,8 @@ static int unused(const struct program_run *r, const char **out)
 /* All three are the same but for their names and for the text that the ranks run (kernel.h). */
 #define DYNAMICS(word, text)                                                                       \
     {                                                                                              \
-        .name = word, .title = text, .has_scene = true, .cache_create = scene_cache_create,        \
+        .name = word, .title = text, .has_scene = true, .repeats = true,                           \
+        .cache_create = scene_cache_create,                                                        \
         .cache_destroy = scene_cache_destroy, .open = open, .prepare = prepare, .judge = judge,    \
         .again = again, .check = check, .baselines = baselines, .estimate = estimate,              \
         .leave_out = leave_out, .unused = unused,                                                  \

@@ -89,6 +89,7 @@ struct program_type {
     const char *name;
     const char *title; /* one line for people */
     bool has_scene;    /* it works on a multibody system: the model's settings act */
+    bool repeats; /* its ranks do the same at any time on any machine (run/tape.h) */
     const void *context; /* the program's own constants; NULL: none */
 
     /* cache_create, cache_destroy: what runs of this program may share (scenes, serial answers);

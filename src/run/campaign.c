@@ -18,6 +18,7 @@
 
 #include "base/check.h"
 #include "base/memory.h"
+#include "base/pipe.h"
 #include "base/progress.h"
 #include "loader/crash.h"
 #include "measure/run_heartbeat.h"
@@ -28,32 +29,6 @@
 /* Poll this often [us], so that the progress of long runs moves although no run ends; and to ask a
  * dealer. */
 enum { MOST_WORKERS = 256, HEARTBEAT_US = 200000, LEAST_PAUSE_US = 100, MOST_PAUSE_US = 5000 };
-
-/* A pipe takes and gives what it can: both go on until all is through. False: the other end is
- * gone. */
-static bool write_all(int fd, const void *data, size_t n)
-{
-    for (const char *p = data; n;) {
-        ssize_t k = write(fd, p, n);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return false;
-        p += k;
-        n -= (size_t)k;
-    }
-    return true;
-}
-
-static bool read_all(int fd, void *data, size_t n)
-{
-    for (char *p = data; n;) {
-        ssize_t k = read(fd, p, n);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return false;
-        p += k;
-        n -= (size_t)k;
-    }
-    return true;
-}
 
 /* What a worker answers: this struct as bytes, then the arrays if the run was made. Pointers in
  * it mean nothing to the reader, who replaces them. */
@@ -67,23 +42,23 @@ struct answer {
 /* From the worker to its parent. */
 static bool send_answer(int fd, struct answer *a)
 {
-    if (!write_all(fd, a, sizeof *a)) return false;
+    if (!pipe_write(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct result_parts p = result_parts(&a->result);
     for (int i = 0; i < RESULT_PARTS; i++)
-        if (!write_all(fd, *p.array[i], p.bytes[i])) return false;
+        if (!pipe_write(fd, *p.array[i], p.bytes[i])) return false;
     return true;
 }
 
 /* The arrays get memory of the parent's arena. */
 static bool receive_answer(int fd, struct answer *a, struct arena *arena)
 {
-    if (!read_all(fd, a, sizeof *a)) return false;
+    if (!pipe_read(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct result_parts p = result_parts(&a->result);
     for (int i = 0; i < RESULT_PARTS; i++) {
         *p.array[i] = p.bytes[i] ? arena_take(arena, p.bytes[i]) : NULL;
-        if (!read_all(fd, *p.array[i], p.bytes[i])) return false;
+        if (!pipe_read(fd, *p.array[i], p.bytes[i])) return false;
     }
     return true;
 }
@@ -102,6 +77,7 @@ struct campaign {
      * ntodo: progress. */
     int nspec, next, handed, nworker, ndone, ntodo;
     pid_t parent; /* whose workers these are */
+    struct run_cache *cache; /* what every worker begins with; NULL: nothing. Borrowed */
     int cores; /* processors for each run */
     const bool *skip; /* (nspec) not to be made; NULL: none */
     struct worker worker[MOST_WORKERS];
@@ -156,6 +132,14 @@ static struct run_order own_order(const struct run_order *order, int index, int 
     return own;
 }
 
+/* What the runs of one process share. */
+static struct run_cache *own_cache(void)
+{
+    struct run_cache *cache = run_cache_create();
+    run_cache_repeat(cache, false);
+    return cache;
+}
+
 /* A worker's life: orders in, answers out. It ends when the parent closes the pipe, or goes. */
 static _Noreturn void worker_main(const struct campaign *c, int at, int orders, int answers)
 {
@@ -165,11 +149,11 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != c->parent) _exit(0); /* it went before that was set */
     struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
-    struct run_cache *cache = run_cache_create();
+    struct run_cache *cache = c->cache ? c->cache : own_cache();
     struct err unguarded; /* a crash is then told by its signal alone */
     err_clear(&unguarded);
     if (c->worker[at].crash) crash_guard_begin(c->worker[at].crash, &unguarded);
-    while (read_all(orders, &index, sizeof index)) {
+    while (pipe_read(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
         const struct run_order own = own_order(c->order, index, c->cores, heartbeat);
@@ -219,7 +203,7 @@ static void give_run(struct worker *w, int index)
 {
     w->busy = index;
     /* A worker without its order would be waited for for ever. */
-    if (index >= 0 && !write_all(w->orders, &w->busy, sizeof w->busy)) kill(w->pid, SIGKILL);
+    if (index >= 0 && !pipe_write(w->orders, &w->busy, sizeof w->busy)) kill(w->pid, SIGKILL);
 }
 
 /* The next run in plan order that is to be made. */
@@ -440,7 +424,7 @@ static void stop_workers(struct campaign *c, bool at_once)
 /* All runs in this process, in order: one worker would only add copying. */
 static bool run_here(struct campaign *c)
 {
-    struct run_cache *cache = run_cache_create();
+    struct run_cache *cache = c->cache ? c->cache : own_cache();
     bool ok = true;
     for (int i = 0; ok && i < c->nspec; i++) {
         if (c->skip && c->skip[i]) continue;
@@ -456,7 +440,7 @@ static bool run_here(struct campaign *c)
         c->ndone++;
         show_progress(c);
     }
-    run_cache_destroy(cache);
+    if (!c->cache) run_cache_destroy(cache);
     return ok;
 }
 
@@ -492,6 +476,37 @@ static struct run_heartbeat *heartbeats_make(void)
     return p == MAP_FAILED ? NULL : p;
 }
 
+/* All runs of a campaign that is filled in as its functions say. */
+static bool run_all(struct campaign *c, int workers, bool quiet, struct err *e)
+{
+    bool apart = false; /* people's code never runs in this process */
+    for (int i = 0; i < c->nspec; i++) {
+        if (c->skip && c->skip[i]) continue;
+        c->ntodo++;
+        if (loads_code(&c->spec[i])) apart = true;
+    }
+    /* Everything is stored already: no process is started. */
+    if (c->ntodo == 0) return true;
+    c->progress = progress_make("runs", c->ntodo, quiet);
+    /* No more workers than runs; the limits are those of the arrays. */
+    const int online = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (workers <= 0) workers = online;
+    if (workers > c->ntodo) workers = c->ntodo;
+    if (workers > MOST_WORKERS) workers = MOST_WORKERS;
+    /* Runs side by side share the processors. */
+    c->cores = online > workers ? online / workers : 1;
+    if (!quiet) c->heartbeat = heartbeats_make();
+    if (c->heartbeat && workers <= 1 && !apart)
+        c->heartbeat->beat = show_progress, c->heartbeat->context = c;
+    struct interrupt ctrl_c; /* whoever counts what is stored has begun one that knows more */
+    interrupt_begin(&ctrl_c, NULL, c->ntodo);
+    bool ok = workers <= 1 && !apart ? run_here(c) : run_workers(c, workers, NULL, e);
+    interrupt_end(&ctrl_c);
+    progress_end(&c->progress);
+    if (c->heartbeat) munmap(c->heartbeat, MOST_WORKERS * sizeof *c->heartbeat);
+    return ok;
+}
+
 bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec,
                   const bool *skip, int workers, bool quiet, run_done_fn *done, void *context,
                   struct err *e)
@@ -502,32 +517,15 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
                          .skip = skip,
                          .done = done,
                          .context = context};
-    bool apart = false; /* people's code never runs in this process */
-    for (int i = 0; i < nspec; i++) {
-        if (skip && skip[i]) continue;
-        c.ntodo++;
-        if (loads_code(&spec[i])) apart = true;
-    }
-    /* Everything is stored already: no process is started. */
-    if (c.ntodo == 0) return true;
-    c.progress = progress_make("runs", c.ntodo, quiet);
-    /* No more workers than runs; the limits are those of the arrays. */
-    const int online = (int)sysconf(_SC_NPROCESSORS_ONLN);
-    if (workers <= 0) workers = online;
-    if (workers > c.ntodo) workers = c.ntodo;
-    if (workers > MOST_WORKERS) workers = MOST_WORKERS;
-    /* Runs side by side share the processors. */
-    c.cores = online > workers ? online / workers : 1;
-    if (!quiet) c.heartbeat = heartbeats_make();
-    if (c.heartbeat && workers <= 1 && !apart)
-        c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
-    struct interrupt ctrl_c; /* whoever counts what is stored has begun one that knows more */
-    interrupt_begin(&ctrl_c, NULL, c.ntodo);
-    bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);
-    interrupt_end(&ctrl_c);
-    progress_end(&c.progress);
-    if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
-    return ok;
+    return run_all(&c, workers, quiet, e);
+}
+
+bool run_campaign_again(const struct run_spec *spec, int nspec, int workers,
+                        struct run_cache *cache, run_done_fn *done, void *context, struct err *e)
+{
+    struct campaign c = {
+        .spec = spec, .nspec = nspec, .cache = cache, .done = done, .context = context};
+    return run_all(&c, workers, true, e);
 }
 
 bool run_stream(const struct run_spec *spec, const struct run_order *order, int nspec, int workers,

@@ -18,6 +18,7 @@ enum { LEAST_RANKS = 1024 };
 struct launch {
     const struct rank_program *rank; /* its functions */
     const void *job; /* what all ranks read, and none writes */
+    struct tape *tape; /* NULL: none */
     char **workspace; /* (nrank) */
 };
 
@@ -25,17 +26,21 @@ struct launch {
 static void program(struct comm *c, void *context)
 {
     struct launch *l = context;
-    l->rank->run(c, l->job, l->workspace[comm_rank(c)]);
+    char *workspace = l->workspace[comm_rank(c)];
+    if (l->tape) tape_rank(l->tape, c, l->rank, l->job, workspace);
+    else l->rank->run(c, l->job, workspace);
 }
 
 /* Taken one by one: all of it will be touched, so the arena may use large pages. */
 static char **make_workspaces(const struct program_run *r, const struct world_load *load,
-                              struct arena *a)
+                              const struct tape *tape, struct arena *a)
 {
     int first, end;
     char **w = TAKE(a, r->spec.nrank, char *);
     world_part(load, &first, &end);
-    for (int i = first; i < end; i++) w[i] = arena_take(a, r->rank->workspace_bytes(r->job, i));
+    for (int i = first; i < end; i++)
+        w[i] = arena_take(a, tape && tape_whole(tape) ? tape_workspace(tape, i)
+                                                      : r->rank->workspace_bytes(r->job, i));
     return w;
 }
 
@@ -101,7 +106,7 @@ int launch_threads(int asked, int cores, int nrank)
 
 bool launch_run(const struct program_run *r, const struct machine_spec *m,
                 const struct record_spec *record, uint64_t seed, int64_t largest,
-                struct arena *scratch, struct arena *world, struct arena *a,
+                struct tape *tape, struct arena *scratch, struct arena *world, struct arena *a,
                 struct run_result *out, struct err *e)
 {
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
@@ -117,7 +122,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     /* What processes cannot share, the first one does. */
     if (alone && r->order.hosts && r->order.hosts->rank > 0) return true;
     if (!alone) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
-    struct launch l = {r->rank, r->job, make_workspaces(r, &load, scratch)};
+    struct launch l = {r->rank, r->job, tape, make_workspaces(r, &load, tape, scratch)};
     load.context = &l;
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
     if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts))
@@ -131,7 +136,8 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     out->threads = 1;
     load.hosts = NULL;
     load.threads = 1;
-    l.workspace = make_workspaces(r, &load, scratch);
+    l.tape = NULL;
+    l.workspace = make_workspaces(r, &load, NULL, scratch);
     return world_run(m, &load, record, seed, a, out, e);
 }
 
@@ -151,7 +157,8 @@ bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec 
         load[i] = load_of(j->r, j->largest);
         load[i].working_set = working_set(j->r);
         if (!load[i].foreign && !rank_stack_set(&load[i], e)) return false;
-        l[i] = (struct launch){j->r->rank, j->r->job, make_workspaces(j->r, &load[i], j->scratch)};
+        l[i] = (struct launch){j->r->rank, j->r->job, NULL,
+                               make_workspaces(j->r, &load[i], NULL, j->scratch)};
         load[i].context = &l[i];
         own[i].load = &load[i];
         j->out->threads = 1;

@@ -10,6 +10,7 @@
 #include "base/err.h"
 #include "measure/run_result.h"
 #include "program/program.h"
+#include "run/tape.h"
 #include "spec/run_spec.h"
 #include "vp/jobs.h"
 
@@ -31,12 +32,13 @@ int launch_threads(int asked, int cores, int nrank);
  *   largest       in   the promise that world_run may rely on, see world_load
  *   scratch       in   memory of the ranks' workspaces
  *   world         in   memory of the machine (world_load), empty again at the end; NULL: fresh
+ *   tape          in   on which the ranks' doing is written, or from which it is repeated; NULL
  *   a, out        out  the result, with its arrays in `a`
  *
  *   Returns false as world_run. */
 bool launch_run(const struct program_run *r, const struct machine_spec *m,
                 const struct record_spec *record, uint64_t seed, int64_t largest,
-                struct arena *scratch, struct arena *world, struct arena *a,
+                struct tape *tape, struct arena *scratch, struct arena *world, struct arena *a,
                 struct run_result *out, struct err *e);
 
 /* One of several jobs. */

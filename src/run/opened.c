@@ -18,6 +18,8 @@ struct run_cache *run_cache_create(void)
     return c;
 }
 
+void run_cache_repeat(struct run_cache *c, bool at_once) { c->tapes = tapes_create(at_once); }
+
 void run_cache_destroy(struct run_cache *c)
 {
     /* Each by the program type that made it. */
@@ -26,6 +28,7 @@ void run_cache_destroy(struct run_cache *c)
     arena_destroy(c->own);
     arena_destroy(c->scratch);
     arena_destroy(c->world);
+    tapes_destroy(c->tapes);
     free(c);
 }
 

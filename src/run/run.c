@@ -29,6 +29,24 @@ static bool chief(const struct program_run *r)
     return !r->order.hosts || r->order.hosts->rank == 0;
 }
 
+/* The ranks once, or what they did on another machine. */
+static bool let_go(struct program_run *r, struct run_cache *c, const struct machine_spec *machine,
+                   const struct record_spec *record, struct arena *a, struct run_result *out,
+                   struct err *e)
+{
+    const struct arena_mark work = arena_mark(c->scratch), results = arena_mark(a);
+    const uint64_t seed = run_spec_seed(&r->spec);
+    const int64_t largest = omission_largest_message(r);
+    struct tape *tape = tape_for(c->tapes, r);
+    const bool ok =
+        launch_run(r, machine, record, seed, largest, tape, c->scratch, c->world, a, out, e);
+    if (!ok || !tape || tape_end(c->tapes, tape, r, out)) return ok;
+    arena_release(a, results);
+    arena_release(c->scratch, work);
+    memset(out, 0, sizeof *out);
+    return launch_run(r, machine, record, seed, largest, NULL, c->scratch, c->world, a, out, e);
+}
+
 /* The ranks once, with the settings that are in force now. */
 static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
                     struct run_result *out, struct err *e)
@@ -39,8 +57,7 @@ static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
     memset(out, 0, sizeof *out);
     out->residual = out->measured_s = NAN;
     if (!r->type->prepare(r, c->scratch, e)) return false;
-    const bool ok = launch_run(r, &machine, &record, run_spec_seed(&r->spec),
-                               omission_largest_message(r), c->scratch, c->world, a, out, e);
+    const bool ok = let_go(r, c, &machine, &record, a, out, e);
     arena_empty(c->world, KEPT_BYTES);
     if (!ok) return false;
     out->residual = out->measured_s = NAN;

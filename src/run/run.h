@@ -28,6 +28,11 @@ struct run_cache;
 struct run_cache *run_cache_create(void);
 void run_cache_destroy(struct run_cache *cache);
 
+/* run_cache_repeat: from now on runs of one task on many machines repeat what its ranks did
+ * (tape.h), from their second run on or, `at_once`, from the first: the same results in less time,
+ * which is no longer that of the program. Once a cache. */
+void run_cache_repeat(struct run_cache *cache, bool at_once);
+
 /* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. `order`:
  * how the run is executed, NULL: as usual. */
 bool run_sharing(const struct run_spec *spec, const struct run_order *order,
@@ -85,6 +90,11 @@ typedef bool run_done_fn(void *context, const struct run_spec *spec,
 bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec,
                   const bool *skip, int workers, bool quiet, run_done_fn *done, void *context,
                   struct err *e);
+
+/* run_campaign_again: a quiet run_campaign of all specs that begins, in every worker, with what
+ * `cache` has: for one campaign after the other of the same tasks. */
+bool run_campaign_again(const struct run_spec *spec, int nspec, int workers,
+                        struct run_cache *cache, run_done_fn *done, void *context, struct err *e);
 
 /* run_refused: what a run that could not be made leaves: its status, and why. */
 struct run_result run_refused(const struct err *why);

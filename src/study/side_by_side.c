@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/pipe.h"
 
 enum { MOST_WORKERS = 64 };
 
@@ -44,31 +45,6 @@ struct crew {
     struct pollfd answers[MOST_WORKERS]; /* fd -1: has ended */
 };
 
-/* Pipes take and give what they can. False: the other end is gone. */
-static bool write_all(int fd, const void *data, size_t n)
-{
-    for (const char *p = data; n > 0;) {
-        const ssize_t k = write(fd, p, n);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return false;
-        p += k;
-        n -= (size_t)k;
-    }
-    return true;
-}
-
-static bool read_all(int fd, void *data, size_t n)
-{
-    for (char *p = data; n > 0;) {
-        const ssize_t k = read(fd, p, n);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return false;
-        p += k;
-        n -= (size_t)k;
-    }
-    return true;
-}
-
 /* Pieces, until there are no more; a worker ends with its parent. */
 static _Noreturn void work(const struct crew *c, int answers)
 {
@@ -80,7 +56,7 @@ static _Noreturn void work(const struct crew *c, int answers)
         err_clear(&h.error);
         h.ok = c->p->make(c->p->context, i, &data, &h.bytes, &h.error);
         if (!h.ok) h.bytes = 0;
-        if (!write_all(answers, &h, sizeof h) || !write_all(answers, data, h.bytes)) break;
+        if (!pipe_write(answers, &h, sizeof h) || !pipe_write(answers, data, h.bytes)) break;
     }
     _exit(0);
 }
@@ -123,12 +99,12 @@ static bool take_some(struct crew *c, struct err *e)
 static bool receive(struct crew *c, int fd)
 {
     struct head h;
-    if (!read_all(fd, &h, sizeof h)) return false;
+    if (!pipe_read(fd, &h, sizeof h)) return false;
     CHECK(h.piece >= 0 && h.piece < c->p->n);
     struct waiting *w = &c->waiting[h.piece];
     *w = (struct waiting){.head = h, .data = malloc(h.bytes + 1)};
     CHECK(w->data != NULL);
-    w->here = read_all(fd, w->data, h.bytes);
+    w->here = pipe_read(fd, w->data, h.bytes);
     return w->here;
 }
 

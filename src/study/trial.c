@@ -104,7 +104,7 @@ struct trial trial_run(const struct run_spec *spec, const struct model *m, const
     err_clear(&e);
     const bool good = trial_open(r, spec, m, s, a, &e) && r->type->prepare(r, a, &e) &&
                       launch_run(r, &spec->machine, &spec->record, run_spec_seed(spec),
-                      launch_largest_message(r), a, NULL, a, result, &e);
+                      launch_largest_message(r), NULL, a, NULL, a, result, &e);
     if (good) answer(&t, r, result);
     else text_copy(t.text, sizeof t.text, e.text);
     run_close(r);

@@ -107,8 +107,8 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
         return true;
     }
     /* The machine that the user named, or the crossbar: answers must not depend on it. */
-    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena, NULL,
-                    v->arena, result, e))
+    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), NULL, v->arena,
+                    NULL, v->arena, result, e))
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
                             .x = program_output(r, lumped ? OUTPUT_QDD : OUTPUT_TAU),

@@ -150,8 +150,8 @@ static bool answer_of(const struct run_spec *spec, unsigned keep, struct arena *
         if (left_out) *n = omission_listing(&r, left_out);
         const struct machine_spec machine = omission_machine(spec, keep);
         const struct record_spec record = omission_record(spec, keep);
-        if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), a, NULL, a, result,
-                        &e))
+        if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), NULL, a, NULL, a,
+                        result, &e))
             fail_msg("%s", e.text);
         assert_int_equal(result->status, RUN_OK);
         keep_answer(&r, result, v);

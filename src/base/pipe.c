@@ -1,0 +1,32 @@
+/* pipe.c - see pipe.h.
+ *
+ * A pipe holds some 64 KiB: larger arrays go through it in pieces, as fast as the other end takes
+ * them. */
+#include "base/pipe.h"
+
+#include <errno.h>
+#include <unistd.h>
+
+bool pipe_write(int fd, const void *data, size_t n)
+{
+    for (const char *p = data; n > 0;) {
+        const ssize_t k = write(fd, p, n);
+        if (k < 0 && errno == EINTR) continue;
+        if (k <= 0) return false;
+        p += k;
+        n -= (size_t)k;
+    }
+    return true;
+}
+
+bool pipe_read(int fd, void *data, size_t n)
+{
+    for (char *p = data; n > 0;) {
+        const ssize_t k = read(fd, p, n);
+        if (k < 0 && errno == EINTR) continue;
+        if (k <= 0) return false;
+        p += k;
+        n -= (size_t)k;
+    }
+    return true;
+}
