@@ -17,6 +17,16 @@ validated() {
     cp "$BATS_FILE_TMPDIR/said" .
 }
 
+# described MACHINE: machine.json, all that is known of MACHINE.
+described() {
+    local made=$BATS_FILE_TMPDIR/$1.json
+    if [ ! -e "$made" ]; then
+        works mimdsim machines "$1" --json
+        printf '%s' "$output" >"$made"
+    fi
+    cp "$made" machine.json
+}
+
 @test "all published figures used for calibration are met, and stored" {
     validated
     grep -q "0 fail" said
@@ -80,7 +90,8 @@ validated() {
     stdout_says "1 fail"
 }
 
-# One row is held back and 40 % off: only a cause excuses it.
+# One row is held back and 40 % off: only a cause excuses it. The folder holds one machine: all of them are that one,
+# without the measurement of contention that a machine named alone gets.
 @test "a figure that was not used for calibration may be off by more than 30 % for a named cause alone" {
     mkdir -p data/machines
     cp "$MIMDSIM_DATA"/machines/t3e-300.yaml data/machines/
@@ -88,20 +99,20 @@ validated() {
     { head -1 table.csv
       echo 'X1,t3e-300,one-way,0,11.4,,,us,P,no,,,"held back"'
       echo 'X2,t3e-300,one-way,8,15,,,us,P,no,,,"held back"'; } >data/machines/published.csv
-    MIMDSIM_DATA=$PWD/data fails_with 1 mimdsim validate t3e-300 --quiet
+    MIMDSIM_DATA=$PWD/data fails_with 1 mimdsim validate all --quiet
     stdout_says "1 fail, 0 explained"
     stdout_says "1 above 30 %, 1 of them without a cause"
     sed -i '/^X1/s/$/,"+40 %: a planted error"/' data/machines/published.csv
-    MIMDSIM_DATA=$PWD/data works mimdsim validate t3e-300 --quiet
+    MIMDSIM_DATA=$PWD/data works mimdsim validate all --quiet
     stdout_says "explained: +40 %: a planted error"
     stdout_says "0 fail, 1 explained"
     stdout_says "1 above 30 %, 0 of them without a cause"
     sql_is mimdsim.db "SELECT verdict, cause FROM check_point WHERE at LIKE '%X1'" 'explained|+40 %: a planted error'
-    MIMDSIM_DATA=$PWD/data works mimdsim validate t3e-300 --json --quiet
+    MIMDSIM_DATA=$PWD/data works mimdsim validate all --json --quiet
     json_is '$.summary.held.points' 2
     json_is '$.summary.held.above_30_percent' 1
     sed -i '/^X1/s/,no,/,maybe,/' data/machines/published.csv
-    MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate t3e-300 --quiet
+    MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all --quiet
     stderr_says "published.csv:2: calibrated: 'maybe'; expected yes, no or other"
 }
 
@@ -113,8 +124,11 @@ validated() {
         min(l ->> 'link' > l ->> 'packet'), min(l ->> 'auto' = l ->> 'packet')
         FROM (SELECT p.value -> 'levels' AS l FROM json_each(readfile('rows.json'), '\$.points') p)
         WHERE l IS NOT NULL" '3|1|1|1|1'
-    works mimdsim validate t3e-300-shmem --quiet
-    [[ $output =~ at\ level\ loggp\ 340.01 ]]
+    # the same rows as lines, from the same numbers
+    if ! sanitized; then
+        works mimdsim validate t3e-300-shmem --quiet
+        [[ $output =~ at\ level\ loggp\ 340.01 ]]
+    fi
     works mimdsim validate paragon --quiet
     stdout_says "packet -, flit" # worms do not fit the buffers
     # 16 ranks in a row of the mesh: eight messages of halves share the middle link of 175 MB/s
@@ -133,7 +147,7 @@ validated() {
         [ "$named" != 0 ] || cause=planted
         { head -1 "$MIMDSIM_DATA/machines/published.csv"
           echo "X1,t3e-300,one-way,0,$value,,,us,P,no,,,\"held back\",\"$cause\""; } >data/machines/published.csv
-        MIMDSIM_DATA=$PWD/data run --separate-stderr mimdsim validate t3e-300 --quiet
+        MIMDSIM_DATA=$PWD/data run --separate-stderr mimdsim validate all --quiet
         stdout_says "$text"
     done
 }
@@ -208,8 +222,7 @@ validated() {
 @test "each published figure of a machine is used by validate, or said to be unused" {
     sed 1d "$MIMDSIM_DATA/machines/published.csv" | cut -d, -f1 | sort >ids
     for file in "$MIMDSIM_DATA"/machines/*.yaml; do
-        works mimdsim machines "$(basename "$file" .yaml)" --json
-        printf '%s' "$output" >machine.json
+        described "$(basename "$file" .yaml)"
         sql_is :memory: "SELECT count(*) FROM json_each(readfile('machine.json'), '\$.values') v
             WHERE v.value ->> 'key' LIKE 'published.%' AND ifnull(v.value ->> 'validate', '') = ''" 0 || { echo "$file"; return 1; }
         sqlite3 :memory: "SELECT substr(v.value ->> 'validate', 1, instr((v.value ->> 'validate') || ' ', ' ') - 1)
@@ -238,8 +251,7 @@ validated() {
 @test "no machine has a number without evidence" {
     for file in "$MIMDSIM_DATA"/machines/*.yaml; do
         name=$(basename "$file" .yaml)
-        works mimdsim machines "$name" --json
-        printf '%s' "$output" >machine.json
+        described "$name"
         sql_is :memory: "SELECT count(*) > 40, sum(v.value ->> 'file' <> 'default' AND v.value ->> 'evidence' = ''
             AND v.value ->> 'source' = '' AND v.value ->> 'key' NOT IN ('title', 'name', 'network.level'))
             FROM json_each(readfile('machine.json'), '\$.values') v" '1|0' || { echo "$name"; return 1; }
@@ -271,8 +283,8 @@ validated() {
 }
 
 @test "ping-pong of every machine on one plot with published points" {
+    validated
     works mimdsim run pingpong-machines --quiet
-    works mimdsim validate all --quiet
     works mimdsim plot mimdsim.db pingpong
     [ -s figures/pingpong.png ]
     [ "$(grep -c published figures/pingpong.csv)" -gt 45 ]
