@@ -202,7 +202,7 @@ refused() {
 
 @test "without gnuplot the data and the script are written, and the status says so" {
     works mimdsim run speedup-t3e --quiet --set model.n=4
-    fails_with 69 env PATH=/none "$MIMDSIM" plot mimdsim.db fig6
+    fails_with 69 env -u MIMDSIM_GNUPLOT PATH=/none "$MIMDSIM" plot mimdsim.db fig6
     stderr_says "gnuplot"
     [ -s figures/fig6.csv ]
     [ -s figures/fig6.gp ]

@@ -121,7 +121,7 @@ status_1() { mimdsim run speedup-t3e --quiet --set n=128 --set level=loggp --set
 status_64() { mimdsim run; }
 status_65() { mimdsim run speedup-t3e --set n=0; }
 status_66() { mimdsim run none; }
-status_69() { PATH=/none "$MIMDSIM" timeline fig8 --format picture; }
+status_69() { MIMDSIM_GNUPLOT= PATH=/none "$MIMDSIM" timeline fig8 --format picture; }
 status_70() { mimdsim run deadlock --quiet; }
 status_71() { (ulimit -v 300000 && mimdsim run speedup-t3e -j 1 --set n=65536 --set machine.topology.dims=64,32,32); }
 status_73() { mimdsim run speedup-t3e -o nowhere/x.db; }

@@ -136,7 +136,7 @@ planted() {
         t=$(command -v $tool) && ln -s "$t" empty/$tool
     done
     export XDG_CACHE_HOME="$PWD/empty-cache"
-    run --separate-stderr -- env ASAN_OPTIONS=detect_leaks=0 PATH="$PWD/empty" MIMDSIM_CC=no-such-gcc "$(command -v mpirun.mpich)" -n 1 "$MIMDSIM" calibrate --quick -o my.yaml
+    run --separate-stderr -- env ASAN_OPTIONS=${ASAN_OPTIONS-}:detect_leaks=0 PATH="$PWD/empty" MIMDSIM_CC=no-such-gcc "$(command -v mpirun.mpich)" -n 1 "$MIMDSIM" calibrate --quick -o my.yaml
     [ "$status" -ne 75 ] || skip "busy"
     [ "$status" -eq 0 ] || { show; return 1; }
     stderr_says 'the code of programs in one file is not measured:'
@@ -180,7 +180,7 @@ C
 
 programs_of_their_own() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-    ASAN_OPTIONS=detect_leaks=0 own_mpi_program "$1"
+    ASAN_OPTIONS=${ASAN_OPTIONS-}:detect_leaks=0 own_mpi_program "$1"
 }
 
 @test "record times a program of Open MPI's mpicc" { programs_of_their_own openmpi; }
@@ -210,7 +210,7 @@ F
     sed 's/use mpi$/use mpi_f08/' sum.f90 >sum8.f90
     for program in sum sum8; do
         mpif90.mpich -o $program $program.f90 || skip "mpif90 does not work"
-        ASAN_OPTIONS=detect_leaks=0 works mimdsim record -n 2 --samples 2 -q -- ./$program
+        ASAN_OPTIONS=${ASAN_OPTIONS-}:detect_leaks=0 works mimdsim record -n 2 --samples 2 -q -- ./$program
         stdout_says "$program: P = 2"
         sql_is mimdsim.db "SELECT P, samples, status, min_s > 0, min_s < 60 FROM real_run WHERE program = '$program'" '2|2|ok|1|1'
     done
