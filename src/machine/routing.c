@@ -40,6 +40,7 @@ struct routing *routing_create(const struct topology *t, enum routing_rule rule,
     struct routing *r = TAKE(a, 1, struct routing);
     *r = (struct routing){
         .topology = t, .type = type, .rule = rule, .channels = channels, .max_hops = t->max_hops};
+    r->most = ROUTING_MOST_OPTIONS;
     r->end = TAKE(a, t->nlink + 1, int);
     for (int i = 0, from, port; i < t->nlink; i++)
         topology_link_ends(t, i, &from, &r->end[i], &port);

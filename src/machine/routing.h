@@ -51,6 +51,7 @@ struct routing {
     int escape;   /* so many lowest channels are free of deadlock by themselves and open to every
                      packet; 0: all channels are */
     int max_hops; /* longest route in links */
+    int most;     /* ways on at one router */
     int *end;     /* (nlink) the router that a link leads to */
     bool minimal; /* through an empty network it takes as few links as the topology's own routes */
     bool by_load; /* routes depend on `used` */

@@ -76,6 +76,7 @@ static bool booksim_create(struct routing *r, struct arena *a, struct err *e)
     r->max_hops = g->diameter;
     r->escape = g->wraps ? RING_ESCAPE : MESH_ESCAPE;
     r->minimal = true;
+    r->most = 2;
     if (g->wraps) return routing_needs(r, 4, "its channel 3 adapts", e);
     return routing_needs(r, 2, "an escape channel and one that adapts", e);
 }

@@ -13,6 +13,7 @@ static bool dragonfly_create(struct routing *r, struct arena *a, struct err *e)
     (void)a;
     const bool ugal = r->rule == ROUTING_BOOKSIM_UGAL;
     r->by_load = r->at_source = ugal;
+    r->most = 1;
     r->max_hops = (ugal ? 2 : 1) * r->topology->max_hops;
     return routing_needs(r, ugal ? UGAL_CHANNELS : MINIMAL_CHANNELS, "a channel for each stage", e);
 }

@@ -88,6 +88,7 @@ static bool order_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->most = 1;
     r->max_hops = g->diameter;
     r->minimal = true;
     return routing_needs(r, g->wraps ? 2 : 1, "two halves of the ring", e);
@@ -112,6 +113,7 @@ static bool either_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->most = 1;
     r->max_hops = g->diameter;
     r->minimal = true;
     r->by_load = r->at_source = r->rule == ROUTING_ADAPTIVE_XY_YX;
@@ -144,6 +146,7 @@ static bool through_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->most = 1;
     r->max_hops = 2 * g->diameter;
     r->minimal = r->rule == ROUTING_ROMM;
     return routing_needs(r, g->wraps ? 4 : 2, "classes for each leg", e);
@@ -199,6 +202,7 @@ static int through_next(const struct routing *r, struct route *p, const struct r
 static bool butterfly_create(struct routing *r, struct arena *a, struct err *e)
 {
     r->state = lattice_create(r, a);
+    r->most = 1;
     r->max_hops = 2 * r->topology->max_hops;
     r->by_load = r->at_source = r->minimal = true;
     return routing_needs(r, 2, "one half for each leg", e);

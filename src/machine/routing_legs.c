@@ -12,6 +12,7 @@ static bool legs_create(struct routing *r, struct arena *a, struct err *e)
     const int legs = r->rule == ROUTING_DETERMINISTIC || r->rule == ROUTING_BOOKSIM_MIN ? 1 : 2;
     r->by_load = r->at_source = r->minimal = r->rule == ROUTING_UGAL_L || r->rule == ROUTING_UGAL_G;
     r->max_hops = legs * r->topology->max_hops;
+    r->most = 1;
     /* The fixed routes of BookSim's arbitrary networks take any channel and may deadlock. */
     if (r->rule == ROUTING_BOOKSIM_MIN) return routing_needs(r, 1, "", e);
     return routing_needs(r, legs * r->topology->nclass, "the topology's classes for each leg", e);

@@ -17,6 +17,7 @@ static bool tree_create(struct routing *r, struct arena *a, struct err *e)
     r->state = g;
     r->by_load = r->rule != ROUTING_NCA;
     r->minimal = true;
+    if (r->rule != ROUTING_ADAPTIVE) r->most = 1;
     if (g->k > ROUTING_MOST_OPTIONS)
         return err_set(e, ERR_CONFIG,
                        "network.routing on a fat-tree of arity %d; expected at most %d", g->k,
@@ -42,7 +43,8 @@ static int tree_up(const struct routing *r, struct route *p, const struct routin
     for (int i = 0; i < n; i++) {
         option[i] = any;
         option[i].link = first + 2 * (port + i);
-        if (routing_used(view, option[i].link) < routing_used(view, option[best].link)) best = i;
+        if (i > 0 && routing_used(view, option[i].link) < routing_used(view, option[best].link))
+            best = i;
     }
     option[best].priority = 2;
     return n;

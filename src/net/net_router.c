@@ -43,25 +43,42 @@ static void busy_leave(struct lane *v)
     v->busy_link = NULL;
 }
 
-void router_route(struct routers *g, struct lane *v)
+/* The ways on of v's front into v->option; of rules that may have many by way of a list on the
+ * stack. Returns how many. */
+static int options_find(struct routers *g, struct lane *v)
 {
-    struct route_option option[ROUTING_MOST_OPTIONS];
     const struct routing_view view = {router_used, g};
-    const bool looks = router_looks(g, v);
-    const int n = routing_next(g->routing, &v->front->worm->route, &view, option);
+    struct route *way = &v->front->worm->route;
+    struct route_option option[ROUTING_MOST_OPTIONS];
+    if (g->routing->most <= v->room) return routing_next(g->routing, way, &view, v->option);
+    const int n = routing_next(g->routing, way, &view, option);
     if (n > v->room) {
         v->room = n;
         v->option = TAKE(g->fabric.net->arena, n, struct route_option);
     }
     for (int i = 0; i < n; i++) v->option[i] = option[i];
-    v->noption = n;
-    if (n == 0) v->count = routing_eject(g->routing, &v->front->worm->route, &v->first);
-    else v->count = router_channels(v, option, &v->first);
-    v->way = router_out(g, v, n == 0 ? NULL : option);
-    v->ways = router_bit(g->port[v->way].out);
-    for (int i = 1; i < n; i++) v->ways |= router_bit(g->port[router_out(g, v, &option[i])].out);
+    return n;
+}
+
+void router_route(struct routers *g, struct lane *v)
+{
+    const bool looks = router_looks(g, v);
+    const int n = options_find(g, v);
+    int first = 0, count;
+    v->noption = (int16_t)n;
+    if (n == 0) count = routing_eject(g->routing, &v->front->worm->route, &first);
+    else count = router_channels(v, v->option, &first);
+    v->first = (int16_t)first;
+    v->count = (int16_t)count;
+    v->way = router_out(g, v, n == 0 ? NULL : v->option);
+    const struct port *p = &g->port[v->way];
+    v->ways = router_bit(p->out);
+    for (int i = 1; i < n; i++)
+        v->ways |= router_bit(g->port[router_out(g, v, &v->option[i])].out);
+    /* What the look at it will ask of. */
+    if (p->lane) __builtin_prefetch(&p->lane[first]);
     v->state = LANE_ASKING;
-    if (looks) v->due += g->fabric.net->setup;
+    if (looks) v->due += g->setup;
 }
 
 /* The head of v's front is there, or on its way: it is routed when it is there and the tail ahead
@@ -103,8 +120,10 @@ int64_t router_used(const void *of, int link)
     const sim_ps late = f->net->credit + p->wire;
     const sim_ps sent = g->now + f->net->tau - f->net->setup + p->wire;
     int64_t used = 0;
+    const bool home = p->passed + late <= g->now; /* all credits of what left */
     for (int i = 0; p->lane && i < f->nchannel; i++) {
         const struct lane *v = &p->lane[i];
+        if (home && v->in == v->out) continue;
         used += v->in - v->out;
         for (int64_t k = v->out - 1; k >= 0 && k >= v->out - g->ring; k--) {
             if (v->stay[k & g->ring].go + late <= g->now) break;

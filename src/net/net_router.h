@@ -47,34 +47,36 @@ struct stay {
 
 enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
 
+enum { LANE_OPTIONS = 2 }; /* ways on that a lane has memory for: few rules give more */
+
 /* A virtual channel of a port, and the FIFO at its end. What a router asks of a channel that it may
  * give lies in the first line, what it asks of a FIFO in the second. */
 struct lane {
     _Alignas(ROUTER_LINE) struct leg *owner; /* who sends over it, from its head to its tail */
     sim_ps free;            /* when the next may own it, if nobody does */
+    sim_ps left;            /* when the flit that left last had left */
     int64_t in, out;        /* flits that ever entered and left */
     struct stay *stay;      /* (ring) of flit n */
-    sim_ps due;             /* see lane_state */
     uint32_t accept, grant; /* round robin: as a FIFO that asks, as a channel that is given */
     int32_t port;
     int16_t channel; /* of that port */
-    bool starved; /* somebody upstream waits for a flit of it to be sent */
-    bool bars;    /* one of its options has no channel, which spoils its turn at the switch */
+    bool starved;    /* somebody upstream waits for a flit of it to be sent */
+    bool bars;       /* one of its options has no channel, which spoils its turn at the switch */
 
-    struct port *of;                 /* port[port] */
-    struct leg *front, *back;        /* worms in the FIFO */
-    struct route_option *option;     /* (noption) of the front, none: to its node */
-    struct lane *busy, **busy_link;  /* the router's lanes that have a front */
-    sim_ps left;                     /* when the tail of the one that left last had left */
-    enum lane_state state;
-    int noption;
-    /* Its first or only way on: port and channels; the outputs of all. */
-    int32_t way;
-    int first, count;
-    uint64_t ways; /* see router_bit */
+    struct port *of;                /* port[port] */
+    struct leg *front;              /* of the worms in the FIFO */
+    sim_ps due;                     /* see lane_state */
+    struct lane *busy, **busy_link; /* the router's lanes that have a front */
+    uint64_t ways;                  /* the outputs of all its ways on; see router_bit */
+    int32_t way;                    /* its first or only way on: port, */
+    int16_t first, count;           /* channels */
+    int16_t noption;
+    uint8_t state; /* enum lane_state */
 
-    int room; /* options that there is memory for */
-    struct route_option only; /* the first of these */
+    struct leg *back;            /* of the worms in the FIFO */
+    struct route_option *option; /* (noption) of the front, none: to its node */
+    int room;                    /* options that there is memory for, */
+    struct route_option few[LANE_OPTIONS]; /* mostly here */
     /* Of one allocation: */
     int pick_priority;
     struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */

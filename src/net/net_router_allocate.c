@@ -143,20 +143,21 @@ static bool bid_add(struct routers *g, struct lane *v, struct port *out, bool sp
 }
 
 /* When the way through the switch is free at both ends. */
-static sim_ps switch_free(const struct routers *g, const struct lane *v, int out)
+static inline sim_ps switch_free(const struct lane *v, const struct port *out)
 {
-    return router_later(g->port[v->port].passed, g->port[out].free);
+    return router_later(v->of->passed, out->free);
 }
 
 /* From when on a FIFO that has its channel has a flit, a credit, and a free way. */
 static sim_ps sends_from(struct routers *g, struct lane *v, sim_ps now)
 {
-    const struct leg *to = v->front->ahead;
     if (v->out >= v->in) return SIM_NEVER;
-    const sim_ps at = router_later(v->stay[v->out & g->ring].come, switch_free(g, v, to->port));
-    struct lane *out = &g->port[to->port].lane[to->channel];
-    if (net_is_ejection(g->fabric.net, to->port)) return at;
-    return router_later(at, router_room(g, out, router_unit(g, to->worm), now));
+    const struct leg *to = v->front->ahead;
+    const struct port *p = &g->port[to->port];
+    const sim_ps at = router_later(v->stay[v->out & g->ring].come, switch_free(v, p));
+    if (to->port >= g->sink) return at;
+    return router_later(at,
+                        router_room(g, &p->lane[to->channel], router_unit(g, to->worm), now));
 }
 
 /* Then it bids; SIM_NEVER unless it will have to come back. */
@@ -187,20 +188,22 @@ static bool eligible(struct routers *g, const struct lane *v, const struct route
  * free. */
 static sim_ps bid_asking(struct routers *g, struct lane *v, sim_ps now)
 {
+    bool may[ROUTING_MOST_OPTIONS];
     sim_ps again = SIM_NEVER;
     int best = -1;
     v->bars = false;
-    for (int i = 0; i < v->noption; i++) {
-        const bool may = eligible(g, v, &v->option[i], now);
-        if (may && v->option[i].priority > best) best = v->option[i].priority;
-        if (!may && g->strict) v->bars = true;
+    for (int i = 0; i == 0 || i < v->noption; i++) {
+        const struct route_option *o = v->noption > 0 ? &v->option[i] : NULL;
+        may[i] = eligible(g, v, o, now);
+        if (may[i] && o && o->priority > best) best = o->priority;
+        if (!may[i] && o && g->strict) v->bars = true;
     }
     for (int i = 0; i == 0 || i < v->noption; i++) {
         const struct route_option *o = v->noption > 0 ? &v->option[i] : NULL;
-        if ((o && !g->strict && o->priority != best) || !eligible(g, v, o, now)) continue;
-        const int p = router_out(g, v, o);
-        sim_ps at = switch_free(g, v, p);
-        if (at <= now && !bid_add(g, v, &g->port[p], true)) at = ps_later(now, g->port[p].flit);
+        if ((o && !g->strict && o->priority != best) || !may[i]) continue;
+        struct port *p = &g->port[router_out(g, v, o)];
+        sim_ps at = switch_free(v, p);
+        if (at <= now && !bid_add(g, v, p, true)) at = ps_later(now, p->flit);
         if (at > now) again = router_sooner(again, at);
     }
     return again;

@@ -48,6 +48,19 @@ static inline void look_source(struct routers *g, int node, sim_ps now)
     if (o->wake == now + 1) router_source_look(g, node, now);
 }
 
+/* Of the router that comes next in its word, the lane that will be asked first is fetched already.
+ */
+static inline void look_router(struct routers *g, const struct gather_slot *s, int r, sim_ps now)
+{
+    const uint64_t rest = s->router.word[r / GATHER_WORD];
+    if (rest) {
+        const int next = r / GATHER_WORD * GATHER_WORD + __builtin_ctzll(rest);
+        const struct lane *v = g->router[next].busy;
+        if (v) __builtin_prefetch(&v->of);
+    }
+    router_look_at(g, r, now);
+}
+
 /* Event: the slot `argument` has come. What is added meanwhile for this very instant is looked at,
  * too. */
 static void look_all(void *subject, uint64_t argument, sim_ps now)
@@ -59,7 +72,7 @@ static void look_all(void *subject, uint64_t argument, sim_ps now)
     q->at = (unsigned)argument;
     for (int i;;) {
         if ((i = set_take(&s->source)) >= 0) look_source(g, i, now);
-        else if ((i = set_take(&s->router)) >= 0) router_look_at(g, i, now);
+        else if ((i = set_take(&s->router)) >= 0) look_router(g, s, i, now);
         else if ((i = set_take(&q->again)) >= 0) router_look_at(g, i, now);
         else break;
     }

@@ -50,14 +50,16 @@ static inline struct lane *router_lanes(struct routers *g, int p)
  * ahead left at one rate; checked one by one where rates differ. */
 static inline sim_ps router_room(const struct routers *g, struct lane *v, int32_t flits, sim_ps now)
 {
+    const struct port *p = v->of;
+    const sim_ps late = g->credit + p->wire;
+    /* Mostly it is empty and all its credits are back. */
+    if (v->in == v->out && v->left + late <= now && flits <= g->buffer) return now;
     const int64_t last = v->in + flits - 1 - g->buffer;
     if (last >= v->out) {
         v->starved = true;
         return SIM_NEVER;
     }
     if (last < 0) return now;
-    const struct port *p = v->of;
-    const sim_ps late = g->credit + p->wire;
     if (g->even)
         return router_later(now, v->stay[last & g->ring].go + late - (flits - 1) * p->flit);
     for (int32_t j = 0; j < flits; j++) {

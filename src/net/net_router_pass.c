@@ -28,14 +28,12 @@ static bool somebody_asks(const struct routers *g, int r, sim_ps at)
 }
 
 /* The tail of v's packet has crossed into out: the channel is free for the next, and v has the
- * front that it has now. */
+ * front that it has now: what stood behind it, from a flit after the tail on. */
 static void tail_sent(struct routers *g, struct lane *v, struct lane *out, sim_ps tail, sim_ps flit)
 {
     /* From its tail on the next packet may own the channel, at a time that may lie ahead. */
     out->owner = NULL;
     out->free = ps_later(tail, flit + g->pause);
-    /* The packet behind it comes to the front a flit after the tail. */
-    v->left = ps_later(tail, flit);
     router_front(g, v);
     /* Others may want the channel. */
     const int r = v->of->to;
@@ -100,11 +98,17 @@ static inline void packet_crosses(struct routers *g, struct lane *v, struct port
     const sim_ps flit = p->flit, come = now + g->reach + p->wire;
     /* A fast port cannot outrun a slow one before it. */
     *tail = router_later(now + (flits - 1) * flit, l->tail + g->tau + v->of->wire);
-    for (int32_t j = 0; j < flits; j++) v->stay[(v->out + j) & g->ring].go = now + j * flit;
-    v->out += flits;
+    const int64_t ring = g->ring;
+    struct stay *stay = v->stay;
+    int64_t n = v->out, end = n + flits;
+    v->out = end;
+    for (sim_ps at = now; n < end; n++, at += flit) stay[n & ring].go = at;
     if (sink) return;
-    for (int32_t j = 0; j < flits; j++) out->stay[(out->in + j) & g->ring].come = come + j * flit;
-    out->in += flits;
+    stay = out->stay;
+    n = out->in;
+    end = n + flits;
+    out->in = end;
+    for (sim_ps at = come; n < end; n++, at += flit) stay[n & ring].come = at;
 }
 
 /* A flit of v's front over port p into out at `now`, and up to `most` - 1 further ones at times
@@ -150,7 +154,7 @@ static inline int32_t flits_cross(struct routers *g, struct lane *v, struct port
 /* A place has become free, and somebody waits for it. */
 static inline void place_freed(struct routers *g, struct lane *v, sim_ps now)
 {
-    if (v->starved) upstream_wake(g, v->port, now + g->fabric.net->credit + g->port[v->port].wire);
+    if (v->starved) upstream_wake(g, v->port, now + g->credit + v->of->wire);
     v->starved = false;
 }
 
@@ -184,7 +188,7 @@ void router_send(struct routers *g, struct lane *v, sim_ps now)
         g->whole ? w->flits : flits_cross(g, v, p, out, sink, w->flits - m->sent, now, &tail);
     m->tail = tail;
     if (head) m->first = now;
-    p->free = in->passed = ps_later(tail, p->flit);
+    p->free = in->passed = v->left = ps_later(tail, p->flit);
     if (!sink) flits_come(g, p, out, m, head, now);
     place_freed(g, v, now);
     if (m->sent < w->flits) {
@@ -258,7 +262,7 @@ static inline void pass_on(struct routers *g, struct lane *v, struct port *in, s
     sim_ps tail;
     if (whole) packet_crosses(g, v, p, out, sink, now, &tail);
     else sent = flits_cross(g, v, p, out, sink, sent, now, &tail);
-    p->free = in->passed = ps_later(tail, p->flit);
+    p->free = in->passed = v->left = ps_later(tail, p->flit);
     /* Its leg goes with it, or stays for the rest, which then holds the channel. */
     struct leg *m = l;
     if (whole || sent == w->flits) {

@@ -15,8 +15,8 @@ struct lane *router_lanes_make(struct routers *g, int p)
     for (int i = 0; i < count; i++) {
         o->lane[i].port = p;
         o->lane[i].of = o;
-        o->lane[i].option = &o->lane[i].only;
-        o->lane[i].room = 1;
+        o->lane[i].option = o->lane[i].few;
+        o->lane[i].room = LANE_OPTIONS;
         o->lane[i].channel = (int16_t)i;
         if (ring) o->lane[i].stay = ring + i * places;
     }

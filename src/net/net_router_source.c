@@ -13,13 +13,16 @@ static int source_channel(struct routers *g, int node, const struct worm *w, sim
 {
     struct port *p = &g->port[node];
     struct lane *v = router_lanes(g, node);
-    for (int k = 0; k < w->count; k++) {
-        const int i = w->first + (p->enter + k) % w->count;
+    /* Turns of packets that may enter over more channels may lie behind the last one. */
+    int turn = p->enter < w->count ? p->enter : p->enter % w->count;
+    for (int k = 0; k < w->count; k++, turn++) {
+        if (turn == w->count) turn = 0;
+        const int i = w->first + turn;
         if (v[i].owner) continue;
         const sim_ps at = router_room(g, &v[i], router_unit(g, w), now);
         *again = router_sooner(*again, at);
         if (at > now) continue;
-        p->enter = (i + 1 - w->first) % w->count;
+        p->enter = turn + 1 < w->count ? turn + 1 : 0;
         return i;
     }
     return -1;
