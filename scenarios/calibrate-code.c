@@ -6,8 +6,9 @@
 #include <math.h>
 #include <mimdsim/program.h>
 
-enum { SUM, SCALED, BLUR, VECTOR, RECURRENCE, POLYNOMIAL, DRAW, CHASE, COUNT, SCAN, RATIO, ROOT };
-enum { MOST = 16384, RING = 512 };
+enum { SUM, SCALED, BLUR, VECTOR, RECURRENCE, POLYNOMIAL, DRAW, CHASE, COUNT, SCAN, RATIO, ROOT,
+       LOADS, MORE_LOADS, ROWS, MIX };
+enum { MOST = 16384, RING = 512, NEAR = 768 };
 
 /* Places of different arrays are not a multiple of 4 KiB apart, where a load would be taken for one
  * of what was stored last. */
@@ -129,6 +130,47 @@ static double root(int64_t n, double by)
     return c[n - 1];
 }
 
+/* From here on the first numbers of each array alone, which stay in a first cache: loads
+ * that wait for the processor's units, not for memory. */
+static double loads(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) c[i] = by * (a[i] + a[i + 9]) + (b[i] + b[i + 9]);
+    return c[5];
+}
+
+static double more_loads(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++)
+            c[i] = by * (a[i] + a[i + 9]) + (b[i] + b[i + 9]) + (a[i + 17] + b[i + 17]);
+    return c[5];
+}
+
+/* Short loops, each with a sum of its own. */
+static double rows(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i + 5 <= NEAR; i += 5) {
+            double x = by;
+            for (int64_t j = 0; j < 5; j++) x += a[i + j] * b[j];
+            c[i] = x;
+        }
+    return c[5];
+}
+
+/* Whole numbers that wait for nothing. */
+static double mix(int64_t n, double by)
+{
+    for (int64_t i = 0; i < n; i++) {
+        uint64_t x = (uint64_t)i ^ (uint64_t)i << 13;
+        x ^= x >> 7;
+        x += x << 17 | x >> 11;
+        c[i] = (double)(int64_t)(x & 1023);
+    }
+    return c[5] + by;
+}
+
 static double once(int64_t n, double by)
 {
     switch (loop) {
@@ -154,6 +196,14 @@ static double once(int64_t n, double by)
         return ratio(n, by);
     case ROOT:
         return root(n, by);
+    case LOADS:
+        return loads(n, by);
+    case MORE_LOADS:
+        return more_loads(n, by);
+    case ROWS:
+        return rows(n, by);
+    case MIX:
+        return mix(n, by);
     default:
         return scan(n, by);
     }
@@ -177,6 +227,6 @@ PROGRAM(.title = "loops of several kinds",
                       PROGRAM_WHOLE(rounds, 1, 1e6, "how often it is made"),
                       PROGRAM_CHOICE(loop,
                                      "sum|scaled|blur|vector|recurrence|polynomial|draw|chase|"
-                                     "count|scan|ratio|root",
+                                     "count|scan|ratio|root|loads|more_loads|rows|mix",
                                      "which loop")},
         .output = {"result"}, .run = run, .serial = {{"the same", run}}, .tolerance = 1e-12);

@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "compile/chain.h"
 #include "compile/entries.h"
 #include "compile/instruction.h"
 #include "compile/label_set.h"
+#include "compile/loops.h"
 
-enum { MOST_NESTED = 64, MOST_LABELS = 4 };
+enum { MOST_NESTED = 64 };
 
 /* A section as the text names it. */
 struct section {
@@ -22,12 +22,8 @@ struct section {
 };
 
 struct block {
-    int number; /* 0: none is open */
+    struct code_block code; /* number 0: none is open */
     struct section *section;
-    struct block_counts counts;
-    struct chain chain;             /* its instructions, should it be a loop */
-    struct span label[MOST_LABELS]; /* (nlabel) where it begins */
-    int nlabel;
 };
 
 struct filter {
@@ -41,6 +37,7 @@ struct filter {
     struct section *sections, *now, *before, *stack[MOST_NESTED], *before_stack[MOST_NESTED];
     int depth;
     struct block block;
+    struct code code; /* blocks of this function that are not yet in `table` */
     int blocks;
     bool begins;   /* the next instruction begins a block */
     bool reached;  /* control can come there from above */
@@ -86,6 +83,7 @@ static struct section *section_named(struct filter *f, struct span key)
  * label for each section, so that there is one piece for each. */
 static void write_entries(struct filter *f)
 {
+    loops_write(&f->code, &f->table);
     if (f->table.length == 0) return;
     text_add(f->out,
              "\t.pushsection " BLOCK_TABLE_SECTION ",\"ao?\",@progbits,.Lmimdsim%d\n\t.balign 4\n",
@@ -95,19 +93,15 @@ static void write_entries(struct filter *f)
     f->table.length = 0;
 }
 
-/* The block's entry in the table: where its counter's operand lies, and its counts. */
+/* The block goes to the code of its function. */
 static void close_block(struct filter *f)
 {
-    const struct block_counts *c = &f->block.counts;
-    if (f->block.number != 0)
-        text_add(&f->table,
-                 "\t.long .Lmimdsim%d-4-.\n\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n",
-                 f->block.number, c->instruction, c->flop, c->div, c->sqrt, c->trig, c->call,
-                 c->bytes, c->issue, c->spare, c->chain_flop, c->chain_cycle, BLOCK_ADD);
+    struct code_block *b = &f->block.code;
     /* Labels that follow each other begin one block. */
-    if (f->block.number != 0) f->block.nlabel = 0;
-    f->block.number = f->block.chain.n = 0;
-    f->block.counts = (struct block_counts){0};
+    if (b->number == 0) return;
+    b->counts.blocks = b->counts.issue > 0;
+    code_add_block(&f->code, *b);
+    *b = (struct code_block){0};
 }
 
 /* The next instruction begins another block; reached tells whether control may come there from
@@ -153,12 +147,12 @@ static bool change_section(struct filter *f, const struct asm_statement *s)
  * written when the image is loaded and the machine is known. */
 static void begin_block(struct filter *f)
 {
-    f->block.number = ++f->blocks;
+    f->block.code.number = ++f->blocks;
     f->block.section = f->now;
-    if (f->now->first == 0) f->now->first = f->block.number;
+    if (f->now->first == 0) f->now->first = f->block.code.number;
     f->begins = false;
     f->reached = true;
-    text_add(f->out, "{disp32} leaq 0(%%r15), %%r15\n.Lmimdsim%d:\n", f->block.number);
+    text_add(f->out, "{disp32} leaq 0(%%r15), %%r15\n.Lmimdsim%d:\n", f->block.code.number);
 }
 
 /* Sums by class. */
@@ -172,20 +166,8 @@ static void add_counts(struct block_counts *sum, const struct block_counts *c)
     sum->call += c->call;
     sum->bytes += c->bytes;
     sum->issue += c->issue;
-}
-
-/* A block that ends with a branch to its own beginning is a loop, and may have to wait for what it
- * computed the round before. */
-static void close_loop(struct filter *f, struct span target)
-{
-    struct block *b = &f->block;
-    for (int i = 0; i < b->nlabel; i++) {
-        if (target.n != b->label[i].n || memcmp(target.s, b->label[i].s, (size_t)target.n) != 0)
-            continue;
-        const struct chain_length round = chain_round(&b->chain);
-        b->counts.chain_flop = (uint16_t)round.flop;
-        b->counts.chain_cycle = (uint16_t)round.cycles;
-    }
+    sum->load += c->load;
+    sum->whole += c->whole;
 }
 
 /* Thread-local addresses are computed by sequences of fixed bytes that the linker replaces. */
@@ -224,12 +206,11 @@ static bool take_instruction(struct filter *f, const struct asm_statement *s)
     f->holds = is_in_sequence(s);
     if (f->in_asm) {
         f->branched = f->branched || flow != FLOW_ON;
-        if (f->now == f->block.section) add_counts(&f->block.counts, &counts);
+        if (f->now == f->block.section) add_counts(&f->block.code.counts, &counts);
         return true;
     }
-    add_counts(&f->block.counts, &counts);
-    chain_add(&f->block.chain, s->word, s->operands);
-    if (flow == FLOW_BRANCH) close_loop(f, s->operands);
+    add_counts(&f->block.code.counts, &counts);
+    code_add_line(&f->code, s->word, s->operands);
     if (flow != FLOW_ON) leave_block(f, flow != FLOW_AWAY);
     return true;
 }
@@ -245,8 +226,9 @@ static void take_label(struct filter *f, struct span name)
     }
     if (!f->now->code || (local && !label_set_has(f->referred, name))) return;
     leave_block(f, true);
-    if (f->block.nlabel < MOST_LABELS) f->block.label[f->block.nlabel++] = name;
+    if (f->block.code.nlabel < MOST_LABELS) f->block.code.label[f->block.code.nlabel++] = name;
     if (local) return;
+    loops_write(&f->code, &f->table);
     /* foo.cold is the part of foo that is seldom executed, and has its frame. */
     if (span_find(name, ".cold") < 0) f->frame = false;
     f->function = name;
@@ -268,9 +250,9 @@ static bool begins_block(struct filter *f, const struct asm_statement *s)
 {
     if (f->in_asm || !f->now->code || !is_executed(s) || f->holds) return false;
     /* Eight is what one instruction counts at most. */
-    if (f->block.number != 0 && f->block.counts.instruction > BLOCK_MOST_INSTRUCTIONS - 8)
+    if (f->block.code.number != 0 && f->block.code.counts.instruction > BLOCK_MOST_INSTRUCTIONS - 8)
         leave_block(f, true);
-    return f->begins || f->block.number == 0;
+    return f->begins || f->block.code.number == 0;
 }
 
 /* Where the name of a called function begins that moves as many bytes as its caller says; NULL:
@@ -352,11 +334,12 @@ static bool take_line(struct filter *f, const char *line, const char *end)
  * its block. */
 static void take_asm_mark(struct filter *f, bool opens)
 {
-    if (opens && f->now->code && f->reached && (f->begins || f->block.number == 0) && !f->holds) {
+    const bool between = f->begins || f->block.code.number == 0;
+    if (opens && f->now->code && f->reached && between && !f->holds) {
         text_add(f->out, "\t");
         begin_block(f);
     }
-    if (!opens && f->branched && f->block.number != 0) leave_block(f, true);
+    if (!opens && f->branched && f->block.code.number != 0) leave_block(f, true);
     f->in_asm = opens;
     f->branched = false;
 }
@@ -452,6 +435,7 @@ bool block_filter(const struct text *in, const struct block_source *source, stru
     struct arena *arena = arena_create();
     struct filter f = {
         .source = source, .arena = arena, .referred = label_set_make(arena), .out = out, .e = e};
+    f.code.arena = arena;
     f.now = f.before = section_named(&f, (struct span){".text", 5});
     f.file = (struct span){source->name, (int)strlen(source->name)};
     find_referred(f.referred, in);

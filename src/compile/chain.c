@@ -9,7 +9,8 @@ enum { VECTOR_FIRST = 16, FLAGS = 48, OTHERS = 49, REGISTERS = 50 };
 
 /* Cycles by which the longest of several chains is chosen. They are those of many processors of the
  * last ten years (Fog, "Instruction tables"); what they take on a machine is its file's matter. */
-enum { LOAD = 4, ADD = 3, PRODUCT = 4, CONVERT = 4, MULTIPLY = 3, DIVIDE = 13, ROOT = 18 };
+enum { LOAD = 4, ADD = CHAIN_ADDITION, PRODUCT = 4, CONVERT = 4 };
+enum { MULTIPLY = 3, DIVIDE = 13, ROOT = 18 };
 
 /* --- registers -------------------------------------------------------------------------------- */
 
@@ -153,11 +154,12 @@ static void add_hidden(struct span m, struct span operands, struct chain_step *s
         s->writes |= flags;
 }
 
-void chain_add(struct chain *c, struct span m, struct span operands)
+uint64_t chain_registers(struct span operand) { return registers_of(operand); }
+
+struct chain_step chain_step_of(struct span m, struct span operands)
 {
     struct chain_step s = {0};
     struct span o, last = {0};
-    if (c->n == CHAIN_MOST || m.n == 0) return;
     const bool address_only = span_starts(m, "lea") || span_starts(m, "nop");
     int n = 0;
     /* Every operand is read; the last one is written as well or only, as the mnemonic tells. */
@@ -184,8 +186,29 @@ void chain_add(struct chain *c, struct span m, struct span operands)
         }
     }
     add_hidden(m, operands, &s);
+    return s;
+}
+
+void chain_add(struct chain *c, struct chain_step s)
+{
+    if (c->instructions == CHAIN_MOST) return;
+    c->instructions++;
     c->step[c->n++] = s;
 }
+
+/* Two marks an instruction at most: it jumps, and it is jumped to. */
+static void add_mark(struct chain *c, enum step_kind kind, int place)
+{
+    if (c->n < 3 * CHAIN_MOST && place < CHAIN_PLACES)
+        c->step[c->n++] = (struct chain_step){.kind = (uint8_t)kind, .place = (uint8_t)place};
+}
+
+void chain_leave(struct chain *c, int place, bool always)
+{
+    add_mark(c, always ? STEP_AWAY : STEP_BRANCH, place);
+}
+
+void chain_join(struct chain *c, int place) { add_mark(c, STEP_JOIN, place); }
 
 /* --- the loop --------------------------------------------------------------------------------- */
 
@@ -194,26 +217,67 @@ struct moment {
     int time, flop, cycles;
 };
 
+/* All registers on the way through a round, and as they are on the ways to places farther on. */
+struct state {
+    struct moment at[REGISTERS];
+    bool here; /* control comes here from above */
+    bool there[CHAIN_PLACES];
+    struct moment place[CHAIN_PLACES][REGISTERS];
+};
+
 static void wait_for(struct moment *now, const struct moment *at, uint64_t registers)
 {
     for (int r = 0; registers != 0; r++, registers >>= 1)
         if ((registers & 1) != 0 && at[r].time > now->time) *now = at[r];
 }
 
-/* All instructions once more, each as soon as what it needs is there. */
-static void execute(const struct chain *c, struct moment at[REGISTERS])
+/* One instruction, as soon as what it needs is there. */
+static void execute_step(const struct chain_step *s, struct moment at[REGISTERS])
+{
+    struct moment now = {0};
+    wait_for(&now, at, s->address);
+    if (s->loads) now.time += LOAD, now.cycles += LOAD;
+    wait_for(&now, at, s->reads);
+    now.time += s->cycles;
+    if (s->flop) now.flop++;
+    else now.cycles += s->cycles;
+    for (int r = 0; r < REGISTERS; r++)
+        if (s->writes >> r & 1) at[r] = now;
+}
+
+/* What both ways have: the earlier one of two. */
+static void take_earlier(struct moment to[REGISTERS], const struct moment from[REGISTERS])
+{
+    for (int r = 0; r < REGISTERS; r++)
+        if (from[r].time < to[r].time) to[r] = from[r];
+}
+
+/* Several jumps may lead to one place; a jump without a condition ends the way down. */
+static void branch(struct state *x, const struct chain_step *s)
+{
+    if (x->there[s->place]) take_earlier(x->place[s->place], x->at);
+    else memcpy(x->place[s->place], x->at, sizeof x->at);
+    x->there[s->place] = true;
+    if (s->kind == STEP_AWAY) x->here = false;
+}
+
+/* A place that nothing is known to lead to is reached somehow. */
+static void join(struct state *x, int place)
+{
+    if (x->there[place] && x->here) take_earlier(x->at, x->place[place]);
+    else if (x->there[place]) memcpy(x->at, x->place[place], sizeof x->at);
+    x->there[place] = false;
+    x->here = true;
+}
+
+/* All instructions once more. */
+static void execute(const struct chain *c, struct state *x)
 {
     for (int i = 0; i < c->n; i++) {
         const struct chain_step *s = &c->step[i];
-        struct moment now = {0};
-        wait_for(&now, at, s->address);
-        if (s->loads) now.time += LOAD, now.cycles += LOAD;
-        wait_for(&now, at, s->reads);
-        now.time += s->cycles;
-        if (s->flop) now.flop++;
-        else now.cycles += s->cycles;
-        for (int r = 0; r < REGISTERS; r++)
-            if (s->writes >> r & 1) at[r] = now;
+        if (s->kind == STEP_EXECUTE) execute_step(s, x->at);
+        else if (s->kind == STEP_JOIN) join(x, s->place);
+        else branch(x, s);
     }
 }
 
@@ -228,12 +292,20 @@ static struct moment latest(const struct moment at[REGISTERS])
 struct chain_length chain_round(const struct chain *c)
 {
     enum { WARM = 16, ROUNDS = 16 };
-    struct moment at[REGISTERS] = {{0}};
+    struct state x = {.here = true};
     /* After some rounds the longest chain has outgrown the others, and each round adds the same. */
-    for (int i = 0; i < WARM; i++) execute(c, at);
-    const struct moment begin = latest(at);
-    for (int i = 0; i < ROUNDS; i++) execute(c, at);
-    const struct moment end = latest(at);
+    for (int i = 0; i < WARM; i++) execute(c, &x);
+    const struct moment begin = latest(x.at);
+    for (int i = 0; i < ROUNDS; i++) execute(c, &x);
+    const struct moment end = latest(x.at);
     return (struct chain_length){.flop = (end.flop - begin.flop + ROUNDS / 2) / ROUNDS,
                                  .cycles = (end.cycles - begin.cycles + ROUNDS / 2) / ROUNDS};
+}
+
+struct chain_length chain_once(const struct chain *c)
+{
+    struct state x = {.here = true};
+    execute(c, &x);
+    const struct moment end = latest(x.at);
+    return (struct chain_length){end.flop, end.cycles};
 }

@@ -13,7 +13,8 @@
 
 #include "compile/asm_line.h"
 
-enum { CHAIN_MOST = 256 };
+enum { CHAIN_MOST = 1024, CHAIN_PLACES = 32 };
+enum { CHAIN_ADDITION = 3 }; /* nominal cycles of a floating-point addition */
 
 /* One instruction as a step from registers to registers; masks have a bit for each register. */
 struct chain_step {
@@ -21,12 +22,21 @@ struct chain_step {
     uint8_t cycles;                  /* nominal, without those of its load */
     bool flop;                       /* floating-point addition, or minimum and the like */
     bool loads;
+    uint8_t kind;  /* enum step_kind */
+    uint8_t place; /* of a jump and of what it leads to */
 };
 
-/* The instructions of one block. */
+enum step_kind {
+    STEP_EXECUTE,
+    STEP_BRANCH, /* to a later place, or on */
+    STEP_AWAY,   /* to a later place */
+    STEP_JOIN    /* where these lead to */
+};
+
+/* The instructions of a round of a loop, in the order of execution. */
 struct chain {
-    int n;
-    struct chain_step step[CHAIN_MOST]; /* (n) */
+    int n, instructions;
+    struct chain_step step[3 * CHAIN_MOST]; /* (n) instructions, jumps and places */
 };
 
 /* A round of the longest chain: its floating-point additions, and the nominal cycles of all its
@@ -35,11 +45,25 @@ struct chain_length {
     int flop, cycles;
 };
 
-/* chain_add: one more instruction. Those beyond CHAIN_MOST are left out. */
-void chain_add(struct chain *c, struct span mnemonic, struct span operands);
+/* chain_step_of: the registers and cycles of an instruction. chain_registers: the bits of the
+ * registers that an operand names. */
+struct chain_step chain_step_of(struct span mnemonic, struct span operands);
+uint64_t chain_registers(struct span operand);
+
+/* chain_add: one more instruction. Those beyond CHAIN_MOST are left out.
+ *
+ * chain_leave: a jump to a later place of the round (< CHAIN_PLACES); `always`: it never goes on.
+ * chain_join: that place. Of several ways to it the shortest counts, since a processor that
+ * foresees a branch does not wait for what the other way would have computed. */
+void chain_add(struct chain *c, struct chain_step s);
+void chain_leave(struct chain *c, int place, bool always);
+void chain_join(struct chain *c, int place);
 
 /* chain_round: what a round of the loop adds to its longest chain when the instructions are
  * executed again and again. What goes through memory is no part of it. */
 struct chain_length chain_round(const struct chain *c);
+
+/* chain_once: the longest chain of one round alone, from its beginning to its last result. */
+struct chain_length chain_once(const struct chain *c);
 
 #endif

@@ -248,6 +248,35 @@ static void count_memory(struct span m, struct span operands, int width, bool fr
     c->bytes = (uint16_t)bytes;
 }
 
+/* Loads of vector registers, which few units of a processor make; those of whole numbers seldom
+ * hold it up. The stack frame counts, and so do constants. An operand in memory that comes last is
+ * stored. */
+static void count_vector_load(struct span m, struct span operands, struct block_counts *c)
+{
+    struct span next;
+    if (span_starts(m, "lea") || span_starts(m, "nop") || span_starts(m, "prefetch")) return;
+    for (int i = 0; (next = asm_operand(operands, i + 1)).n > 0; i++)
+        if (is_memory(asm_operand(operands, i))) c->load = 1;
+}
+
+/* Instructions that the units for whole numbers execute: neither moves, which processors do by
+ * renaming or loading, nor branches, which go with their comparison. A product of two words comes
+ * in two parts; a conversion reads a general register. */
+static void count_whole(struct span m, struct span operands, int width, struct block_counts *c)
+{
+    static const char *const others[] = {"mov",  "push",     "pop",   "nop", "rep", "f",
+                                         "wait", "prefetch", "endbr", "v",   NULL};
+    if (width > 0) {
+        c->whole = (span_starts(m, "cvtsi2") || span_starts(m, "vcvtsi2")) && operands.n > 0 &&
+                   operands.s[0] == '%';
+        return;
+    }
+    for (int i = 0; others[i] != NULL; i++)
+        if (span_starts(m, others[i])) return;
+    const bool product = span_starts(m, "mul") || span_starts(m, "imul");
+    c->whole = product && asm_operand(operands, 1).n == 0 ? 2 : 1;
+}
+
 /* Work by class of one instruction. Wide vector registers count as one instruction a lane of 8
  * bytes, so that the count does not depend on how wide the vectors of this computer are. */
 enum flow instruction_read(struct span m, struct span operands, bool frame,
@@ -266,6 +295,8 @@ enum flow instruction_read(struct span m, struct span operands, bool frame,
         count_float(m, width, &c);
         count_x87_and_integer(m, &c);
         count_memory(m, operands, width, frame, &c);
+        if (width > 0) count_vector_load(m, operands, &c);
+        count_whole(m, operands, width, &c);
     }
     *counts = c;
     return flow;

@@ -20,11 +20,13 @@ struct block_table {
     uint64_t address; /* of entry[0] in the file */
 };
 
-/* block_cost_ps: cost of a block on a node [ps]: node_cost_code_ps, times `factor`, to the nearest
- * picosecond. */
+/* block_cost_ps: cost of a block that stands alone on a node [ps], times `factor`, to the nearest
+ * picosecond: the slowest of the finer bounds where the node has them, else node_cost_code_ps. */
 int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts, double factor);
 
-/* block_costs_patch: write the cost of every block of `table` into the code of the image.
+/* block_costs_patch: write the cost of every block of `table` into the code of the image. Where the
+ * node has a price of loads, blocks of a loop with an entry of its own (BLOCK_LOOP) overlap: each
+ * takes its share of what the whole round is slowest in.
  *
  *   at, image  in      where the image's bytes are; they are written
  *   c, factor  in      the node of the run's machine, and what its times are multiplied by (1: as

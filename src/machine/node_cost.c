@@ -45,5 +45,7 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .code_root = cycles_ps(s->code.root > 0 ? s->code.root : s->sqrt_cycles, s->clock),
         .chain = cycles_ps(s->code.chain, s->clock),
         .step = cycles_ps(s->code.step, s->clock),
+        .load = cycles_ps(s->code.load, s->clock),
+        .whole = cycles_ps(s->code.whole, s->clock),
     };
 }

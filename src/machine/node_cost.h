@@ -17,6 +17,8 @@ struct node_cost {
     bool roofline;      /* `byte` does not count, `moved` does */
     /* The same, finer; issue 0: not known. */
     double issue, code_div, code_root, chain, step;
+    double load;  /* 0: not known, and each block of a loop stands alone */
+    double whole;
 };
 
 /* node_cost_make: the costs of `s`; with the roofline model those of data in the first cache
@@ -79,27 +81,59 @@ static inline double node_cost_code_ps(const struct node_cost *c, const struct w
     return longer > memory ? longer : memory;
 }
 
-/* What a piece of code does beside its work: instructions, each once, and the longest chain of a
- * loop: additions, and nominal cycles of other instructions. */
+/* What a piece of code does beside its work: blocks entered, instructions, each once, loads of
+ * vector registers, instructions that compute with whole numbers, and the longest chain of a loop:
+ * additions, and nominal cycles of other instructions. */
 struct code_work {
-    unsigned issue, chain_flop, chain_cycle;
+    unsigned blocks, issue, load, whole, chain_flop, chain_cycle;
 };
 
-/* node_cost_fine_ps: the same by the finer prices, where issue > 0. Instructions are issued one
- * after the other (those of elementary functions, too); meanwhile the divider, the chain of a loop
- * and the memory work at their own pace, so that the longest of four counts. The counter in each
- * block waits for that of the block before: a step at least. */
-static inline double node_cost_fine_ps(const struct node_cost *c, const struct work *w,
-                                       const struct code_work *code)
+/* What a processor does side by side, so that the slowest of them is what a piece of code takes. */
+enum code_bound {
+    BOUND_CHAIN,   /* what a round of a loop waits for of the round before */
+    BOUND_ISSUE,   /* instructions, one after the other; those of elementary functions, too */
+    BOUND_DIVIDER, /* divisions and square roots */
+    BOUND_MEMORY,  /* bytes */
+    BOUND_COUNTER, /* the counter in each block waits for that of the block before */
+    BOUND_LOAD,    /* loads of vector registers */
+    BOUND_WHOLE,   /* computing with whole numbers, which the counter does, too */
+    CODE_BOUNDS
+};
+
+/* node_cost_bound_ps: what a piece of code takes by one of them [ps], not rounded, by the finer
+ * prices. Where loads have a price, the counter counts as an instruction. */
+static inline double node_cost_bound_ps(const struct node_cost *c, const struct work *w,
+                                        const struct code_work *code, enum code_bound bound)
 {
-    const double issue = code->issue * c->issue + (double)w->trig * c->trig,
-                 divide = (double)w->div * c->code_div + (double)w->sqrt * c->code_root,
-                 each = c->roofline ? c->moved : 0.5 * c->byte, memory = (double)w->bytes * each;
-    double chain = code->chain_flop * c->chain + code->chain_cycle * c->step;
-    if (code->issue > 0 && chain < c->step) chain = c->step;
-    double longest = chain > issue ? chain : issue;
-    if (divide > longest) longest = divide;
-    return memory > longest ? memory : longest;
+    const double each = c->roofline ? c->moved : 0.5 * c->byte;
+    const unsigned counters = c->load > 0 ? code->blocks : 0;
+    switch (bound) {
+    case BOUND_CHAIN:
+        return code->chain_flop * c->chain + code->chain_cycle * c->step;
+    case BOUND_ISSUE:
+        return (code->issue + counters) * c->issue + (double)w->trig * c->trig;
+    case BOUND_DIVIDER:
+        return (double)w->div * c->code_div + (double)w->sqrt * c->code_root;
+    case BOUND_MEMORY:
+        return (double)w->bytes * each;
+    case BOUND_COUNTER:
+        return code->blocks * c->step;
+    case BOUND_LOAD:
+        return code->load * c->load;
+    default:
+        return (code->whole + code->blocks) * c->whole;
+    }
+}
+
+/* node_cost_bound_of: the slowest of them; the first of equal ones. */
+static inline enum code_bound node_cost_bound_of(const struct node_cost *c, const struct work *w,
+                                                 const struct code_work *code)
+{
+    enum code_bound slowest = BOUND_CHAIN;
+    for (enum code_bound b = BOUND_ISSUE; b < CODE_BOUNDS; b++)
+        if (node_cost_bound_ps(c, w, code, b) > node_cost_bound_ps(c, w, code, slowest))
+            slowest = b;
+    return slowest;
 }
 
 #endif

@@ -22,7 +22,8 @@ enum { ROUNDS = 12 };
 #define STEP 0.02
 #define SMALL_PRICE 0.05
 
-static const char *const names[CODE_PRICES] = {"issue", "div", "root", "chain", "step"};
+static const char *const names[CODE_PRICES] = {"issue", "div",  "root", "chain",
+                                                "step",  "load", "whole"};
 
 const char *code_price_name(int i) { return names[i]; }
 
@@ -81,8 +82,9 @@ static bool linear_piece(const struct code_rates *r, code_time_fn *time, void *c
 
 bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, struct err *e)
 {
-    /* A processor of four instructions a cycle, whose additions take three. */
-    double price[CODE_PRICES] = {0.25, 5, 8, 3, 1}, best[CODE_PRICES], least = INFINITY, squares;
+    /* A processor of four instructions and two loads a cycle, whose additions take three. */
+    double price[CODE_PRICES] = {0.25, 5, 8, 3, 1, 0.5, 0.25}, best[CODE_PRICES];
+    double least = INFINITY, squares;
     memcpy(best, price, sizeof best);
     if (r->n < CODE_PRICES)
         return err_set(e, ERR_DATA, "%d loops are too few to fit prices of code to", r->n);
@@ -117,12 +119,14 @@ static bool simulated_time(void *context, int i, const double *price, double *se
     struct arena *a = arena_create();
     struct run_result *r = TAKE(a, 1, struct run_result);
     spec.machine.node = *x->node;
-    /* A price of nothing at all would switch the finer rule off, or ask for node.div. */
+    /* A price of nothing at all would switch finer rules off, or ask for node.div. */
     spec.machine.node.code = (struct code_spec){.issue = fmax(price[0], 1e-6),
                                                 .div = fmax(price[1], 1e-6),
                                                 .root = fmax(price[2], 1e-6),
                                                 .chain = price[3],
-                                                .step = price[4]};
+                                                .step = price[4],
+                                                .load = fmax(price[5], 1e-6),
+                                                .whole = price[6]};
     const bool ok = predict_simulate(&spec, x->cache, a, r, e);
     *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
     arena_destroy(a);

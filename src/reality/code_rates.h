@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "plan/plan.h"
 
-enum { CODE_RATES_MOST = 24, CODE_PRICES = 5 };
+enum { CODE_RATES_MOST = 24, CODE_PRICES = 7 };
 
 /* One loop. */
 struct code_sample {
@@ -16,7 +16,7 @@ struct code_sample {
 };
 
 /* Prices in cycles of the processor's clock, in the order of names: node.code.issue, div, root,
- * chain, step. */
+ * chain, step, load, whole. */
 struct code_rates {
     double price[CODE_PRICES]; /* [cycles] */
     double residual, median_residual; /* relative: the largest, the median */

@@ -86,7 +86,9 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
                                      .div = n->code.div * factor,
                                      .root = n->code.root * factor,
                                      .chain = n->code.chain * factor,
-                                     .step = n->code.step * factor};
+                                     .step = n->code.step * factor,
+                                     .load = n->code.load * factor,
+                                     .whole = n->code.whole * factor};
         return;
     default:
         break;

@@ -59,6 +59,11 @@ static const char *const node_models[] = {"rates", "roofline", NULL};
     .fallback = "0 B"
 #define LEVEL_COUNT(name) .kind = FIELD_INT, LEVEL(name, processors), .max = 1 << 20
 
+/* A price of compiled code; 0 is none. */
+#define CODE_PRICE(name)                                                                           \
+    .key = "node.code." #name, .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.name),        \
+    .min = 0, .max = 1e6, .fallback = "0 cycles"
+
 /* A price or a power, 0 where the file states none. */
 #define PRICE(member)                                                                              \
     .kind = FIELD_REAL, AT(price.member), .min = 0, .max = 1e12, .fallback = "0",            \
@@ -168,38 +173,34 @@ static const struct field fields[] = {
      .max = 1e13,
      .doc = "processor clock, for the cycle counts below"},
     {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0,
-     .max = 1e6,
-     .fallback = "0 cycles", .doc = "time of one division"},
+     .max = 1e6, .fallback = "0 cycles", .doc = "time of one division"},
     {.key = "node.sqrt", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.sqrt_cycles), .min = 0,
-     .max = 1e6,
-     .fallback = "0 cycles", .doc = "time of one square root"},
+     .max = 1e6, .fallback = "0 cycles", .doc = "time of one square root"},
     {.key = "node.trig", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.trig_cycles), .min = 0,
-     .max = 1e6,
-     .fallback = "0 cycles", .doc = "time of one sine or cosine"},
+     .max = 1e6, .fallback = "0 cycles", .doc = "time of one sine or cosine"},
     {.key = "node.instruction", .kind = FIELD_REAL, .unit = UNIT_CYCLES,
      AT(node.instruction_cycles), .min = 0, .max = 1e6, .fallback = "0 cycles",
      .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
             "node.flop_rate tells that several are issued at once"},
-    /* Where the first is given, the five hold together for blocks of compiled code, in the place of
-     * node.instruction and node.flop_rate (machine/node_cost.h). Machine files that calibrate
-     * writes give them; those of machines that nobody has at hand do not, since no source states
-     * what a chain of additions takes. */
-    {.key = "node.code.issue", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.issue),
-     .min = 0, .max = 1e6, .fallback = "0 cycles",
+    /* Where the first is given, the others hold together with it for blocks of compiled code, in
+     * the place of node.instruction and node.flop_rate (machine/node_cost.h). Machine files that
+     * calibrate writes give them; no source states what a chain of additions takes elsewhere. */
+    {CODE_PRICE(issue),
      .doc = "programs made by mimdsim cc, finer: one instruction that waits for nothing, however "
             "wide; 0: node.instruction and node.flop_rate hold"},
-    {.key = "node.code.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.div),
-     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+    {CODE_PRICE(div), .idle = machine_idle_without_code,
      .doc = "a division where none waits for the one before; 0: node.div"},
-    {.key = "node.code.root", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.root),
-     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+    {CODE_PRICE(root), .idle = machine_idle_without_code,
      .doc = "a square root, likewise; 0: node.sqrt"},
-    {.key = "node.code.chain", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.chain),
-     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+    {CODE_PRICE(chain), .idle = machine_idle_without_code,
      .doc = "a floating-point addition that waits for the one before it through a loop"},
-    {.key = "node.code.step", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.step),
-     .min = 0, .max = 1e6, .fallback = "0 cycles", .idle = machine_idle_without_code,
+    {CODE_PRICE(step), .idle = machine_idle_without_code,
      .doc = "a nominal cycle of the other instructions of such a chain (docs/compiler.md)"},
+    {CODE_PRICE(load), .idle = machine_idle_without_code,
+     .doc = "a load of a floating-point number or a vector; where it is given, the blocks of a "
+            "loop overlap (docs/compiler.md)"},
+    {CODE_PRICE(whole), .idle = machine_idle_without_code,
+     .doc = "an instruction that computes with whole numbers or addresses"},
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
      .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},

@@ -41,6 +41,9 @@ struct node_spec {
         double root;  /* one square root, likewise */
         double chain; /* floating-point addition that waits for the one before it in a loop */
         double step;  /* nominal cycle of other instructions that do */
+        double load;  /* one load of a vector register, 0: loads and loops have no times of their
+                         own */
+        double whole; /* one instruction that computes with whole numbers */
     } code;           /* programs compiled by `mimdsim cc`, finer [cycles] (node_cost.h) */
     double call_time;          /* overhead of one small operator call [s] */
     double copy_bandwidth;     /* memory copies [B/s] */

@@ -23,8 +23,8 @@ calibrated() {
     grep -q 'residual .* median, .* largest' my.yaml
     # The code of programs in one file, and the collectives; each with what it was fitted to.
     if command -v gcc >/dev/null; then
-        for key in issue div root chain step; do grep -q "^    $key: {value: .* cycles, .*fit to .* loops, residual" my.yaml; done
-        [ "$(grep -c '^#   calibrate-code, loop = ' my.yaml)" -eq 12 ]
+        for key in issue div root chain step load whole; do grep -q "^    $key: {value: .* cycles, .*fit to .* loops, residual" my.yaml; done
+        [ "$(grep -c '^#   calibrate-code, loop = ' my.yaml)" -eq 16 ]
     fi
     grep -q 'collectives by algorithm and size on 2 processors; predicted from the segments with a residual of' my.yaml
     [ "$(grep -c '^#   allreduce ' my.yaml)" -ge 1 ]

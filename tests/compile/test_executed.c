@@ -182,19 +182,22 @@ static bool is_filler(const unsigned char *at)
            memcmp(at, "\xf3\x0f\x1e\xfa", 4) == 0;
 }
 
-/* Addresses of counters, each with the number of its entry in the low bits. */
-static uint64_t *counters(const struct image *i)
+/* Addresses of the *n counters, each with the number of its entry; the code's end behind them.
+ * Entries of loops have none. */
+static uint64_t *counters(const struct image *i, size_t *n)
 {
+    *n = 0;
     uint64_t *place = calloc(i->table.n + 1, 2 * sizeof *place);
     if (place == NULL) wrong("no memory");
     for (size_t k = 0; k < i->table.n; k++) {
+        if (i->table.entry[k].kind != BLOCK_ADD) continue;
         const unsigned char *imm =
             (const unsigned char *)&i->table.entry[k] + i->table.entry[k].immediate;
-        place[2 * k] = (uint64_t)(imm - BLOCK_ADD_OPCODE_BYTES - i->code);
-        place[2 * k + 1] = k;
+        place[2 * *n] = (uint64_t)(imm - BLOCK_ADD_OPCODE_BYTES - i->code);
+        place[2 * (*n)++ + 1] = k;
     }
-    qsort(place, i->table.n, 2 * sizeof *place, by_address);
-    place[2 * i->table.n] = (uint64_t)(i->end - i->code);
+    qsort(place, *n, 2 * sizeof *place, by_address);
+    place[2 * *n] = (uint64_t)(i->end - i->code);
     return place;
 }
 
@@ -206,9 +209,10 @@ enum { ENTRY_BYTES = 23, PAD_BYTES = 18, PAD_BEGINS = 7 };
 /* Returns the sum that r15 must be. */
 static long judge(const struct image *i, const char *name)
 {
-    uint64_t *place = counters(i);
+    size_t n;
+    uint64_t *place = counters(i, &n);
     long sum = 0, executed = 0;
-    for (size_t k = 0; k < i->table.n; k++) {
+    for (size_t k = 0; k < n; k++) {
         const struct block_counts *c = &i->table.entry[place[2 * k + 1]].counts;
         const uint32_t times = i->tally[place[2 * k]];
         int instructions = 0;

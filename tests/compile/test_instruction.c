@@ -118,10 +118,54 @@ static void each_instruction_counts_what_it_does(void **state)
         const enum flow flow = instruction_read(s.word, s.operands, x->frame, &c);
         /* However wide, it is issued once. */
         assert_int_equal(c.issue, 1);
-        c.issue = 0;
+        c.issue = c.load = c.whole = 0;
         if (flow != x->flow || memcmp(&c, &x->c, sizeof c) != 0)
             fail_msg("%s: flow %d, counts %u %u %u %u %u %u %u", x->text, flow, c.instruction,
                      c.flop, c.div, c.sqrt, c.trig, c.call, c.bytes);
+    }
+}
+
+/* Loads of vector registers and computing with whole numbers, which have prices of their own. */
+static void units_of_a_processor(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int load, whole;
+    } cases[] = {
+        {"movsd (%rdi,%rax,8), %xmm1", 1, 0},
+        {"movsd %xmm1, (%rdi,%rax,8)", 0, 0},
+        {"addsd .LC0(%rip), %xmm1", 1, 0},
+        {"vfmadd213pd 8(%rsp), %ymm1, %ymm0", 1, 0},
+        {"comisd (%rax), %xmm1", 1, 0},
+        {"cmpltsd (%rax), %xmm1", 1, 0},
+        {"mulsd %xmm0, %xmm1", 0, 0},
+        {"movl (%rdi), %eax", 0, 0},
+        {"addl (%rdi), %eax", 0, 1},
+        {"leaq 8(%rdi,%rsi), %rax", 0, 1},
+        {"cmpq %rax, %rdi", 0, 1},
+        {"sarq %rdx", 0, 1},
+        {"imulq %rdi", 0, 2},
+        {"imulq %rdi, %rax", 0, 1},
+        {"mulq %rcx", 0, 2},
+        {"idivq %rcx", 0, 1},
+        {"movq %rax, %rdi", 0, 0},
+        {"cvtsi2sdq %rdx, %xmm1", 0, 1},
+        {"cvtsi2sdl (%rdx), %xmm1", 1, 0},
+        {"cvttsd2siq %xmm0, %rcx", 0, 0},
+        {"pushq %rbx", 0, 0},
+        {"nopw (%rax)", 0, 0},
+        {"fldl (%rax)", 0, 0},
+        {"jne .L3", 0, 0},
+        {"call f@PLT", 0, 0},
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *at = cases[i].text;
+        const struct asm_statement s = asm_next(&at, at + strlen(at));
+        struct block_counts c;
+        instruction_read(s.word, s.operands, false, &c);
+        if (c.load != cases[i].load || c.whole != cases[i].whole)
+            fail_msg("%s: %u loads, %u whole", cases[i].text, c.load, c.whole);
     }
 }
 
@@ -160,6 +204,7 @@ static void a_line_falls_into_its_statements(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(units_of_a_processor),
         cmocka_unit_test(a_line_falls_into_its_statements),
         cmocka_unit_test(each_instruction_counts_what_it_does),
     };

@@ -93,7 +93,7 @@ static void the_finer_prices_hold_where_there_are_some(void **state)
         struct block_counts c;
         int64_t ps;
     } cases[] = {
-        {{.instruction = 8, .flop = 4, .issue = 5}, 500},
+        {{.instruction = 8, .flop = 4, .issue = 5, .load = 9, .whole = 90}, 500},
         {{.issue = 5, .trig = 1}, 5500},
         {{.issue = 5, .div = 1}, 7000},
         {{.issue = 5, .div = 1, .sqrt = 2}, 23000},
@@ -101,16 +101,95 @@ static void the_finer_prices_hold_where_there_are_some(void **state)
         {{.issue = 5, .chain_flop = 1, .chain_cycle = 4}, 2100},
         {{.issue = 40, .chain_flop = 1, .chain_cycle = 4}, 4000},
         {{.issue = 5, .bytes = 16}, 16000},
-        {{.issue = 2}, 300}, /* the counter's own step */
+        {{.issue = 2, .blocks = 1}, 300}, /* the counter's own step */
         {{.bytes = 0}, 0},
     };
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++)
         assert_int_equal(block_cost_ps(&fine, &cases[i].c, 1), cases[i].ps);
     assert_int_equal(block_cost_ps(&fine, &cases[1].c, 2), 11000);
+    /* With a price of loads the counter is an instruction. */
+    struct node_cost finer = fine;
+    finer.load = 70;
+    finer.whole = 50;
+    static const struct block_counts loads = {.issue = 5, .load = 9, .blocks = 1},
+                                     whole = {.issue = 5, .whole = 15, .blocks = 1},
+                                     counter = {.issue = 5, .blocks = 1};
+    assert_int_equal(block_cost_ps(&finer, &loads, 1), 630);
+    assert_int_equal(block_cost_ps(&finer, &whole, 1), 800);
+    assert_int_equal(block_cost_ps(&finer, &counter, 1), 600);
     /* Without a price of what is issued the others are not looked at. */
     struct node_cost coarse = fine;
     coarse.issue = 0;
     assert_int_equal(block_cost_ps(&coarse, &cases[0].c, 1), 40000);
+}
+
+/* A loop of two blocks and what its entry says of a round of it. */
+static void loop_costs(const struct block_counts *round, const struct node_cost *c, int64_t first,
+                       int64_t last)
+{
+    struct image i;
+    struct err e;
+    err_clear(&e);
+    const struct block_counts counts[BLOCKS] = {
+        *round,
+        {.instruction = 6, .issue = 6, .div = 1, .load = 2, .whole = 3, .blocks = 1},
+        {.instruction = 4, .issue = 4, .load = 7, .whole = 1, .blocks = 1}};
+    struct block_table t = image_make(&i, counts);
+    struct block_entry *entry = (struct block_entry *)(void *)&i.byte[TABLE_AT];
+    /* The last place, of a rate otherwise, becomes that of code. */
+    memcpy(&i.byte[code_at[2] - BLOCK_ADD_OPCODE_BYTES], BLOCK_ADD_OPCODE, BLOCK_ADD_OPCODE_BYTES);
+    entry[0].kind = BLOCK_LOOP;
+    entry[0].immediate = 2;
+    entry[2].kind = BLOCK_ADD;
+    if (!block_costs_patch(&t, image_at, &i, c, 1, &e)) fail_msg("%s", e.text);
+    assert_int_equal(word_at(&i, 13), first);
+    assert_int_equal(word_at(&i, code_at[2]), last);
+}
+
+static void blocks_of_a_loop_take_the_same_bound(void **state)
+{
+    (void)state;
+    struct node_cost c = {
+        .issue = 100, .code_div = 500, .chain = 900, .step = 10, .load = 30, .whole = 20};
+    /* a round of the first block twice and the last once: what all of it takes longest */
+    const struct block_counts round = {.issue = 16, .div = 2, .load = 11, .whole = 7, .blocks = 3};
+    loop_costs(&round, &c, 700, 500);
+    c.code_div = 1000;
+    loop_costs(&round, &c, 1000, 0);
+    c.load = 500;
+    loop_costs(&round, &c, 1000, 3500);
+    c.whole = 1000;
+    loop_costs(&round, &c, 4000, 2000);
+    c.step = 9000;
+    loop_costs(&round, &c, 9000, 9000);
+    /* a chain is the round's, at its end */
+    c.step = 10;
+    struct block_counts chained = round;
+    chained.chain_flop = 20, chained.chain_cycle = 5;
+    loop_costs(&chained, &c, 0, 18050);
+    /* without a price of loads each block stands alone */
+    c.load = c.whole = 0;
+    loop_costs(&chained, &c, 1000, 400);
+}
+
+/* Loops that are empty, longer than the table, in another one, or of other things than blocks. */
+static void a_loop_that_does_not_fit_is_refused(void **state)
+{
+    (void)state;
+    static const struct node_cost c = {.issue = 100, .load = 30};
+    for (int fault = 0; fault < 5; fault++) {
+        struct image i;
+        struct err e;
+        err_clear(&e);
+        struct block_table t = image_make(&i, usual);
+        struct block_entry *entry = (struct block_entry *)(void *)&i.byte[TABLE_AT];
+        entry[0].kind = BLOCK_LOOP;
+        entry[0].immediate = fault == 0 ? 0 : fault == 1 ? 3 : fault == 2 ? -1 : 2;
+        if (fault == 3) entry[1].kind = BLOCK_LOOP, entry[1].immediate = 1;
+        assert_false(block_costs_patch(&t, image_at, &i, &c, 1, &e));
+        assert_int_equal(e.kind, ERR_DATA);
+        assert_non_null(strstr(e.text, "entry 0 of 3"));
+    }
 }
 
 static void a_table_that_does_not_fit_is_refused(void **state)
@@ -151,6 +230,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_block_gets_its_cost),
         cmocka_unit_test(the_finer_prices_hold_where_there_are_some),
+        cmocka_unit_test(blocks_of_a_loop_take_the_same_bound),
+        cmocka_unit_test(a_loop_that_does_not_fit_is_refused),
         cmocka_unit_test(a_table_that_does_not_fit_is_refused),
         cmocka_unit_test(a_block_that_takes_too_long_is_refused),
     };
