@@ -279,6 +279,7 @@ static void take_own_chains(struct code *c, const struct loops *l, struct round 
 /* The outermost loops that overlap have entries. */
 void loops_write(struct code *c, struct text *table)
 {
+    /* One round is room for all, as its chain is large. */
     const struct loops l = find_loops(c);
     struct round *r = TAKE(c->arena, 1, struct round);
     take_own_chains(c, &l, r);

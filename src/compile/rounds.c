@@ -2,6 +2,7 @@
 #include "compile/rounds.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { DEEPEST = 8 };
 
@@ -14,7 +15,7 @@ struct value {
 };
 enum { ENTRY = -1, NOWHERE = -2 };
 
-/* Operands of two kinds; all others are in memory or labels. */
+/* A register, or a constant: operands of two kinds; all others are in memory or labels. */
 static bool is_register(struct span o) { return o.n > 1 && o.s[0] == '%'; }
 static bool is_number(struct span o) { return o.n > 1 && o.s[0] == '$'; }
 
@@ -49,14 +50,36 @@ static bool adds_constant(const struct code_line *l, uint64_t *from, long *by)
            span_find(a, ",") < 0;
 }
 
-/* The value of a register in front of a line. */
-static struct value value_before(const struct code *c, int line, uint64_t reg)
+static struct value value_before(const struct code *c, int line, int depth, uint64_t reg);
+
+/* An address with an index, D(B,I,S), whose index is a plain number there, as when an outer loop
+ * begins: what is added to B, and B, 0 where there is none. */
+static bool adds_index(const struct code *c, int line, int depth, uint64_t *base, long *by)
+{
+    const struct span a = asm_operand(c->line[line].operands, 0);
+    const char *open = memchr(a.s, '(', (size_t)a.n), *comma;
+    if (!is_word(c->line[line].word, "lea", 3) || open == NULL) return false;
+    comma = memchr(open, ',', (size_t)(a.s + a.n - open));
+    if (comma == NULL) return false;
+    const struct span first = {open + 1, (int)(comma - open - 1)},
+                      rest = {comma + 1, (int)(a.s + a.n - comma - 2)};
+    const char *scale = memchr(rest.s, ',', (size_t)rest.n);
+    const struct span index = {rest.s, scale != NULL ? (int)(scale - rest.s) : rest.n};
+    /* Depth goes along, so that addresses of addresses do not take the way many times over. */
+    const struct value at = value_before(c, line, depth, chain_registers(index));
+    *base = first.n > 0 ? chain_registers(first) : 0;
+    *by = strtol(a.s, NULL, 0) + at.offset * (scale != NULL ? strtol(scale + 1, NULL, 0) : 1);
+    return at.line == NOWHERE;
+}
+
+/* The value of a register in front of a line, `depth` steps on the way. */
+static struct value value_before(const struct code *c, int line, int depth, uint64_t reg)
 {
     /* rbx, rsp, rbp and r12 to r15 are those that calls leave as they are (System V ABI). */
     static const uint64_t kept = 0xf038;
     long sum = 0;
     /* Line by line upwards: each that writes the register tells from what, or ends the way. */
-    for (int depth = 0; line-- > 0;) {
+    while (line-- > 0) {
         const struct code_line *l = &c->line[line];
         const struct span a = asm_operand(l->operands, 0);
         const bool call = span_starts(l->word, "call") && (reg & kept) == 0;
@@ -64,9 +87,10 @@ static struct value value_before(const struct code *c, int line, uint64_t reg)
         long by;
         if (!call && (l->step.writes & reg) == 0) continue;
         if (call || ++depth > DEEPEST) return (struct value){line, reg, sum};
-        if (adds_constant(l, &from, &by)) {
+        if (adds_constant(l, &from, &by) || adds_index(c, line, depth, &from, &by)) {
             reg = from;
             sum += by;
+            if (reg == 0) return (struct value){NOWHERE, 0, sum};
         } else if (is_word(l->word, "mov", 3) && is_register(a)) reg = chain_registers(a);
         else if (is_word(l->word, "mov", 3) && is_number(a))
             return (struct value){NOWHERE, 0, sum + strtol(a.s + 1, NULL, 0)};
@@ -101,10 +125,10 @@ static int count(const struct code *c, int first, int end, uint64_t moved, struc
     struct value to = {NOWHERE, 0, 0};
     if (is_register(bound)) {
         if (writes_of(c, first, end, chain_registers(bound), &unused) != 0) return 0;
-        to = value_before(c, first, chain_registers(bound));
+        to = value_before(c, first, 0, chain_registers(bound));
     } else if (is_number(bound)) to.offset = strtol(bound.s + 1, NULL, 0);
     else return 0;
-    const struct value from = value_before(c, first, moved);
+    const struct value from = value_before(c, first, 0, moved);
     if (from.line != to.line || from.reg != to.reg) return 0;
     /* Up or down, but towards the end; a step may lead beyond it. */
     const long way = to.offset - from.offset;

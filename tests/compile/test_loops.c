@@ -68,6 +68,13 @@ static const struct rounds counted[] = {
      "\tleaq 16(%rax), %rax\n\tcmpq %rdx, %rax\n\tjne .L2\n", 3},
     {"", "\tmovq %rdi, %rax\n\taddq $8, %rax\n\tleaq 40(%rdi), %rdx\n",
      "\taddq $8, %rax\n\tcmpq %rdx, %rax\n\tjne .L2\n", 4},
+    /* an index that is zero when the loop around begins, and its end that goes with it */
+    {"\tmovl $24, %ebp\n\txorl %ebx, %ebx\n", "\tleaq 0(,%rbx,8), %rax\n",
+     "\taddq $8, %rax\n\tcmpq %rax, %rbp\n\tjne .L2\n", 3},
+    {"\tmovl $2, %ebx\n", "\tleaq 8(%rdi,%rbx,4), %rax\n\tleaq 40(%rdi), %rdx\n",
+     "\taddq $8, %rax\n\tcmpq %rax, %rdx\n\tjne .L2\n", 3},
+    {"", "\tleaq (%rdi,%rbx), %rax\n\tleaq 40(%rdi), %rdx\n",
+     "\taddq $8, %rax\n\tcmpq %rax, %rdx\n\tjne .L2\n", 0},
     /* not known: another register, a bound that moves, a step that is none, memory, too many */
     {"", "\txorl %eax, %eax\n", "\taddq $8, %rax\n\tcmpq %rsi, %rax\n\tjne .L2\n", 0},
     {"\tleaq 64(%rdi), %rdx\n", "\tmovq %rsi, %rax\n",
