@@ -5,7 +5,10 @@ setup_file() { :; }
 
 @test "a curve is printed, stored and drawn" {
     small_mesh "4, 4"
-    works mimdsim load small.yaml --rates 0.05,0.2:0.4:0.1,0.95 --traffic uniform -q
+    few=
+    if sanitized; then few='--messages 20000'; fi
+    # shellcheck disable=SC2086
+    works mimdsim load small.yaml --rates 0.05,0.2:0.4:0.1,0.95 --traffic uniform -q $few
     stdout_says "small, routing deterministic, level packet, traffic uniform"
     stdout_says "16 nodes, messages of 4 flits, cycle 1 ns, empty network 15.5 ns, bound of the routes 1.0000"
     stdout_says "saturation at 0."
@@ -112,12 +115,16 @@ setup_file() { :; }
 
 @test "an interrupted curve goes on where it was" {
     small_mesh "8, 8"
-    run timeout -s INT 1 "$MIMDSIM" load small.yaml --rates 0.02:1 --jobs 1
+    few=
+    if sanitized; then few='--messages 40000'; fi
+    # shellcheck disable=SC2086
+    run timeout -s INT 1 "$MIMDSIM" load small.yaml --rates 0.02:1 --jobs 1 $few
     [ "$status" -ne 0 ]
     [[ $output == *"interrupted: what is stored stays"* ]]
     stored=$(sql mimdsim.db "SELECT count(*) FROM load_point")
     sqlite3 mimdsim.db "UPDATE load_point SET host_s = 77"
-    works mimdsim load small.yaml --rates 0.1,0.2 -q
+    # shellcheck disable=SC2086
+    works mimdsim load small.yaml --rates 0.1,0.2 -q $few
     [ "$(sql mimdsim.db 'SELECT count(*) FROM load_point WHERE host_s = 77')" -eq "$stored" ]
 }
 

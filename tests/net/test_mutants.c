@@ -5,6 +5,8 @@
  * two answers exchanged, a key dropped or misspelt. It is killed when the file is refused or a
  * verdict is FAIL. Those that change an answer by more than ten times its tolerance must all be
  * killed; so must all keys that are dropped or misspelt. */
+#include "config.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <setjmp.h>
@@ -25,6 +27,11 @@
 
 #define DATA MIMDSIM_SRCDIR "/tests/data/net/"
 
+#ifdef SANITIZERS /* slow, and every kind of fault is in each case */
+enum { SHARE = 4, MUTANTS = 6 };
+#else
+enum { SHARE = 1, MUTANTS = 12 };
+#endif
 enum { SEED = 20261122, MOST_PLACES = 8192, MOST_CASES = 1024 };
 enum fault { DIGIT, SIGN, TRIPLE, EXCHANGE, DROP, MISSPELL, FAULTS };
 static const char *const fault_names[] = {"digit",    "sign",        "factor 3",
@@ -371,8 +378,8 @@ static void try_case(struct sample *c, int mutants, const char *path, struct ran
     }
 }
 
-/* `ncase` cases of the file, drawn, with `mutants` faults each */
-static void mutants_die(const char *file, int ncase, int mutants)
+/* `ncase` cases of the file, or their share, drawn, with MUTANTS faults each */
+static void mutants_die(const char *file, int ncase)
 {
     char folder[256], path[300];
     struct err e;
@@ -389,13 +396,13 @@ static void mutants_die(const char *file, int ncase, int mutants)
     assert_true(text_read_file(&text, file, &e));
     int n = cases_of(text.s, begin, length);
     assert_true(n > 0);
-    for (int i = 0; i < ncase; i++) {
+    for (int i = 0; i < ncase; i += SHARE) {
         int at = (int)random_below(&r, (uint64_t)n);
         char *one = strndup(begin[at], (size_t)length[at]);
         *c = (struct sample){.text = one, .length = length[at]};
         scan_case(c);
         if (killed(one, NULL, path, c)) fail_msg("not even the true case passes: %.300s", one);
-        try_case(c, mutants, path, &r, &tally);
+        try_case(c, MUTANTS, path, &r, &tally);
         free(one);
     }
     text_free(&text);
@@ -416,37 +423,37 @@ static void mutants_die(const char *file, int ncase, int mutants)
 static void makespans(void **state)
 {
     (void)state;
-    mutants_die(DATA "makespan.json", 60, 12);
+    mutants_die(DATA "makespan.json", 60);
 }
 
 static void bands(void **state)
 {
     (void)state;
-    mutants_die(DATA "makespan_sensitivity.json", 20, 12);
+    mutants_die(DATA "makespan_sensitivity.json", 20);
 }
 
 static void collectives(void **state)
 {
     (void)state;
-    mutants_die(DATA "collectives.json", 16, 12);
+    mutants_die(DATA "collectives.json", 16);
 }
 
 static void cases_by_hand(void **state)
 {
     (void)state;
-    mutants_die(DATA "hand_cases.json", 30, 12);
+    mutants_die(DATA "hand_cases.json", 30);
 }
 
 static void latencies(void **state)
 {
     (void)state;
-    mutants_die(DATA "latency_load.json", 3, 12);
+    mutants_die(DATA "latency_load.json", 3);
 }
 
 static void saturations(void **state)
 {
     (void)state;
-    mutants_die(DATA "saturation.json", 2, 12);
+    mutants_die(DATA "saturation.json", 2);
 }
 
 int main(void)

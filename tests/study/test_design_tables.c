@@ -1,6 +1,8 @@
 /* test_design_tables.c - the design's tables of condition numbers, errors and breakdowns (physics
  * 8), entry by entry: each is met within a factor of 10, or it is listed with what comes out here
  * and why. */
+#include "config.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -123,6 +125,12 @@ static double measure(struct subject *t, const struct entry *x)
 
 static bool within(double x, double y) { return x <= 10 * y && y <= 10 * x; }
 
+#ifdef SANITIZERS /* slow, and more bodies are more of the same */
+enum { MOST_BODIES = 64, FEW_ENTRIES = 100 };
+#else
+enum { MOST_BODIES = 1 << 20, FEW_ENTRIES = 200 };
+#endif
+
 static void every_entry_is_met_or_explained(void **state)
 {
     (void)state;
@@ -132,6 +140,7 @@ static void every_entry_is_met_or_explained(void **state)
     struct entry x;
     int entries = 0, met = 0, wrong = 0;
     while (entry_read(f, &x)) {
+        if (x.n > MOST_BODIES) continue;
         const double here = measure(&t, &x);
         const bool fits = within(here, x.value);
         entries++;
@@ -144,11 +153,12 @@ static void every_entry_is_met_or_explained(void **state)
     fclose(f);
     subject_end(&t);
     print_message("%d entries, %d within a factor of 10\n", entries, met);
-    assert_true(entries > 200);
+    assert_true(entries > FEW_ENTRIES);
     assert_true(10 * met > 8 * entries);
     assert_int_equal(wrong, 0);
 }
 
+#ifndef SANITIZERS /* long chains */
 /* 8.5: where pivots stop being positive. */
 static void breakdown_comes_where_the_design_says(void **state)
 {
@@ -165,7 +175,16 @@ static void breakdown_comes_where_the_design_says(void **state)
     /* long before breakdown there is nothing right in the answer */
     assert_true(pcr > 1e-6 && isfinite(pcr));
     assert_true(design_backward_error(&t.system, SOLVER_PARTITION, PART_CR, 8) < 1e-14);
-    x = (struct entry){.n = 64, .ratio = 1e12};
+    subject_end(&t);
+}
+#endif
+
+/* ... and where CRBA has nothing right any more. */
+static void uneven_masses_break_crba_alone(void **state)
+{
+    (void)state;
+    struct subject t = {0};
+    struct entry x = {.n = 64, .ratio = 1e12};
     static const char *const family[] = {"twist", "sphere"}, *const masses[] = {"heavy-tip", "up",
                                                                                 "even"};
     for (int k = 0; k < 6; k++) {
@@ -185,7 +204,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_entry_is_met_or_explained),
+#ifndef SANITIZERS
         cmocka_unit_test(breakdown_comes_where_the_design_says),
+#endif
+        cmocka_unit_test(uneven_masses_break_crba_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,6 @@
 /* test_load.c - load curves against closed forms and the reference router. */
+#include "config.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +13,12 @@
 #include "base/arena.h"
 #include "study/load.h"
 #include "study/netcheck_case.h"
+
+#ifdef SANITIZERS /* slow, and more loads are more of the same */
+enum { LOADS = 1 };
+#else
+enum { LOADS = 5 };
+#endif
 
 /* A network of the reference router under a pattern: flits of 16 B, cycles of 1 ns. */
 struct asked {
@@ -111,9 +119,9 @@ static void a_single_link_is_a_queue(void **state)
     (void)state;
     static const enum network_level level[] = {LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT,
                                                LEVEL_AUTO};
-    static const double load[] = {0.1, 0.5, 0.8};
+    static const double load[] = {0.5, 0.1, 0.8};
     for (int l = 0; l < 5; l++)
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3 && k < LOADS; k++) {
             struct asked x;
             ask(&x, "fullmesh4", 1, 32, level[l], "shift(1)", 20);
             struct load_point p = point(&x, load[k]);
@@ -143,6 +151,8 @@ static void saturation_of_a_queue_is_its_closed_form(void **state)
     arena_destroy(x.a);
 }
 
+/* Under sanitizers the queue above, which takes the same way. */
+#ifndef SANITIZERS
 /* Saturation is at most the bound of the most loaded link, and reaches it where one flow has it
  * all. */
 static void saturation_is_below_the_bound(void **state)
@@ -162,6 +172,17 @@ static void saturation_is_below_the_bound(void **state)
     arena_destroy(x.a);
 }
 
+static void saturation_is_that_of_the_reference_router(void **state)
+{
+    (void)state;
+    struct asked x;
+    ask(&x, "mesh8x8", 1, 16, LEVEL_FLIT, "uniform", 4);
+    const double found = saturation(&x);
+    if (found < 0.98 * 0.353 || found > 1.02 * 0.361) fail_msg("saturation %g", found);
+    arena_destroy(x.a);
+}
+#endif
+
 /* BookSim 2 (tests/data/net/latency_load.json, saturation.json): mesh 8x8, uniform, 4 flits, one
  * channel of 16. */
 static void curves_are_those_of_the_reference_router(void **state)
@@ -169,22 +190,20 @@ static void curves_are_those_of_the_reference_router(void **state)
     (void)state;
     static const struct {
         double offered, latency;
-    } list[] = {{0.01, 24.3461},
+    } list[] = {{0.2203, 28.4948},
+                {0.01, 24.3461},
                 {0.1102, 25.2937},
-                {0.2203, 28.4948},
                 {0.2937, 33.1211},
                 {0.3305, 39.4383}};
     struct asked x;
     ask(&x, "mesh8x8", 1, 16, LEVEL_FLIT, "uniform", 4);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < LOADS; i++) {
         struct load_point p = point(&x, list[i].offered);
         assert_int_equal(p.status, LOAD_OK);
         if (fabs(p.mean_ps / 1000 / list[i].latency - 1) > 0.03)
             fail_msg("load %g: %g, not %g", list[i].offered, p.mean_ps / 1000, list[i].latency);
         assert_true(p.half_ps <= 0.02 * p.mean_ps);
     }
-    double found = saturation(&x);
-    if (found < 0.98 * 0.353 || found > 1.02 * 0.361) fail_msg("saturation %g", found);
     arena_destroy(x.a);
 }
 
@@ -378,7 +397,10 @@ int main(void)
         cmocka_unit_test(large_networks_are_drawn),
         cmocka_unit_test(a_single_link_is_a_queue),
         cmocka_unit_test(saturation_of_a_queue_is_its_closed_form),
+#ifndef SANITIZERS
         cmocka_unit_test(saturation_is_below_the_bound),
+        cmocka_unit_test(saturation_is_that_of_the_reference_router),
+#endif
         cmocka_unit_test(curves_are_those_of_the_reference_router),
         cmocka_unit_test(overloads_have_no_latency),
         cmocka_unit_test(deadlocks_are_points),

@@ -1,5 +1,7 @@
 /* test_verify_mutants.c - the checker checked: changed answers are found, and how many of them is
  * printed. */
+#include "config.h"
+
 #include <glob.h>
 #include <math.h>
 #include <setjmp.h>
@@ -23,6 +25,11 @@
 
 #define DATA(file) MIMDSIM_SRCDIR "/tests/data/vectors/" file
 
+#ifdef SANITIZERS /* slow, and files of one kind are read alike */
+enum { EACH = 3, STEP = 4 };
+#else
+enum { EACH = 12, STEP = 1 };
+#endif
 enum { MOST_NUMBERS = 20000 };
 
 /* The keys of answers, as the file has them, and where their numbers stand in struct
@@ -165,7 +172,7 @@ static void no_row_accepts_changed_answers(void **state)
     glob_t files;
     int wrong = 0;
     assert_int_equal(glob(DATA("*.json"), 0, NULL, &files), 0);
-    for (size_t i = 0; i < files.gl_pathc; i++) {
+    for (size_t i = 0; i < files.gl_pathc; i += STEP) {
         const char *path = files.gl_pathv[i];
         bool small = strstr(path, "n000") || strstr(path, "closed_f") || strstr(path, "x_m") ||
                      strstr(path, "tiny");
@@ -432,13 +439,13 @@ static void mutants_are_killed(void **state)
     for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
         char path[512];
         snprintf(path, sizeof path, "%s%s.json", DATA(""), file[i]);
-        mutate_file(path, 12, &r, &t);
+        mutate_file(path, EACH, &r, &t);
     }
     for (int k = 0; k < MUTATIONS; k++)
         printf("  %-12s %3d of %3d mutants killed\n", mutation_name[k], t.killed[k], t.made[k]);
     printf("  of %d that change an answer by more than ten tolerances, or a key, %d: %.1f %%\n",
            t.mattered, t.mattered_killed, 100.0 * t.mattered_killed / t.mattered);
-    assert_true(t.mattered > 300);
+    assert_true(t.mattered > 25 * EACH);
     assert_int_equal(t.mattered_killed, t.mattered);
 }
 
