@@ -156,22 +156,32 @@ static int *count_said(const struct plan *p, const char *const *said)
     return count;
 }
 
-/* Which runs go on several host threads, and why others do not. */
+/* The reasons for a way in which runs are executed, each once. */
+static void print_way(const struct plan *p, const char *way, const char *const *said)
+{
+    int *count = count_said(p, said);
+    for (int i = 0; i < p->nrun; i++)
+        if (count[i] > 0) printf("%s: %d of %d runs: %s\n", way, count[i], p->nrun, said[i]);
+    free(count);
+}
+
+/* Which runs go on several host threads, which of them by windows of simulated time and why, and
+ * why others do not. */
 static void print_threads(const struct plan *p, const struct run_estimate *r)
 {
-    const char **said = memory_zeroed((size_t)p->nrun + 1, sizeof *said);
+    const char **alone = memory_zeroed((size_t)p->nrun + 1, sizeof *alone);
+    const char **windows = memory_zeroed((size_t)p->nrun + 1, sizeof *windows);
     int several = 0;
     for (int i = 0; i < p->nrun; i++) {
         several += r[i].threads > 1;
-        said[i] = r[i].alone;
+        alone[i] = r[i].alone;
+        windows[i] = r[i].alone ? NULL : r[i].ordered;
     }
-    int *count = count_said(p, said);
     if (several > 0) printf("on several threads: %d of %d runs\n", several, p->nrun);
-    for (int i = 0; i < p->nrun; i++)
-        if (count[i] > 0)
-            printf("on one thread: %d of %d runs: %s\n", count[i], p->nrun, r[i].alone);
-    free(count);
-    free(said);
+    print_way(p, "threads go by windows of simulated time", windows);
+    print_way(p, "on one thread", alone);
+    free(windows);
+    free(alone);
 }
 
 /* What computing costs by: each text once, with the number of runs that it is true of. */

@@ -12,7 +12,7 @@
 
 /* Fewer ranks on each thread than this, and messages between threads cost more than a thread saves
  * (bench/bench_threads). */
-enum { LEAST_RANKS = 1024 };
+enum { LEAST_RANKS = 1024, LEAST_ORDERED = 2048, MOST_ORDERED = 4 };
 
 /* What all ranks share, and each rank's own memory. */
 struct launch {
@@ -86,6 +86,13 @@ static int64_t working_set(const struct program_run *r)
     return (int64_t)most;
 }
 
+const char *launch_ordered(const struct program_run *r, const struct machine_spec *m,
+                           const struct record_spec *record, int64_t largest)
+{
+    const struct world_load load = load_of(r, largest);
+    return world_ordered(m, &load, record);
+}
+
 const char *launch_alone(const struct program_run *r, const struct machine_spec *m,
                          const struct record_spec *record, int64_t largest)
 {
@@ -93,14 +100,16 @@ const char *launch_alone(const struct program_run *r, const struct machine_spec 
     return world_alone(m, &load, record);
 }
 
-int launch_threads(int asked, int cores, int nrank)
+int launch_threads(int asked, int cores, int nrank, bool ordered)
 {
     if (asked != RUN_THREADS_AUTO) return asked > 0 ? asked : 1;
     /* Those that this process may use: a batch system, or taskset, leaves fewer than there are. */
     cpu_set_t set;
     const int mine = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
     int threads = cores > 0 && cores < mine ? cores : mine;
-    if (nrank / LEAST_RANKS < threads) threads = nrank / LEAST_RANKS;
+    const int least = ordered ? LEAST_ORDERED : LEAST_RANKS;
+    if (nrank / least < threads) threads = nrank / least;
+    if (ordered && threads > MOST_ORDERED) threads = MOST_ORDERED;
     return threads > 0 ? threads : 1;
 }
 
@@ -114,14 +123,17 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.scratch = world;
     load.working_set = working_set(r);
     if (!load.foreign && !rank_stack_set(&load, e)) return false;
+    const char *ordered = world_ordered(m, &load, record);
     const char *alone = world_alone(m, &load, record);
-    load.threads = alone ? 1 : launch_threads(r->order.threads, r->order.cores, load.nrank);
+    load.threads =
+        alone ? 1 : launch_threads(r->order.threads, r->order.cores, load.nrank, ordered != NULL);
     out->threads = load.threads;
-    if (alone && (r->order.threads > 1 || r->order.hosts))
-        text_copy(out->alone, sizeof out->alone, alone);
+    /* Processes share what may happen in any order, threads more. */
+    const char *why = r->order.hosts ? ordered : r->order.threads > 1 ? alone : NULL;
+    if (why) text_copy(out->alone, sizeof out->alone, why);
     /* What processes cannot share, the first one does. */
-    if (alone && r->order.hosts && r->order.hosts->rank > 0) return true;
-    if (!alone) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
+    if (ordered && r->order.hosts && r->order.hosts->rank > 0) return true;
+    if (!ordered) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
     struct launch l = {r->rank, r->job, tape, make_workspaces(r, &load, tape, scratch)};
     load.context = &l;
     if (!world_run(m, &load, record, seed, a, out, e)) return false;

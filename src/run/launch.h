@@ -18,12 +18,15 @@
  * open. */
 int64_t launch_largest_message(const struct program_run *r);
 
-/* launch_alone: why such a run takes one host thread whatever was asked for, NULL: it may take
- * several (world_alone). After open. launch_threads: how many it takes otherwise, of those `asked`
- * for on `cores` processors (run_order). */
+/* launch_ordered: why things must happen in the order of simulated time in such a run, NULL: they
+ * need not (world_ordered). launch_alone: why it takes one host thread whatever was asked for,
+ * NULL: it may take several (world_alone). Both after open. launch_threads: how many it takes
+ * otherwise, of those `asked` for on `cores` processors (run_order), by windows if `ordered`. */
+const char *launch_ordered(const struct program_run *r, const struct machine_spec *m,
+                           const struct record_spec *record, int64_t largest);
 const char *launch_alone(const struct program_run *r, const struct machine_spec *m,
                          const struct record_spec *record, int64_t largest);
-int launch_threads(int asked, int cores, int nrank);
+int launch_threads(int asked, int cores, int nrank, bool ordered);
 
 /* launch_run: run the ranks of `r`, which has been prepared, to the end on virtual processors of
  * machine `m`.

@@ -280,8 +280,12 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->nomission = omission_listing(&r, out->omission);
         const struct machine_spec machine = omission_machine(spec, r.order.keep);
         const struct record_spec record = omission_record(spec, r.order.keep);
-        out->alone = launch_alone(&r, &machine, &record, omission_largest_message(&r));
-        out->threads = out->alone ? 1 : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank);
+        const int64_t largest = omission_largest_message(&r);
+        out->ordered = launch_ordered(&r, &machine, &record, largest);
+        out->alone = launch_alone(&r, &machine, &record, largest);
+        out->threads = out->alone ? 1
+                                  : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank,
+                                                   out->ordered != NULL);
         out->nunused = r.type->unused ? r.type->unused(&r, out->unused) : 0;
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a
          * rank's own. */

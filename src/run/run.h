@@ -66,6 +66,7 @@ struct run_estimate {
     double host_bytes; /* estimated memory */
     int threads;       /* of the host, on all of its processors */
     const char *alone; /* why one, whatever is asked for; NULL: several may run it (world_alone) */
+    const char *ordered; /* why by windows of simulated time; NULL: in any order (world_ordered) */
     int nomission;     /* what the run leaves out */
     struct omission omission[RUN_MAX_OMISSIONS];
     int nunused;       /* settings that the model's file makes idle: "key: reason" */

@@ -12,6 +12,8 @@
  * its arrival or later; and the network's events come in an order of their own (sim.h). */
 #include "vp/arrivals.h"
 
+#include "vp/team.h"
+
 /* MOST: so many that their messages stay in a cache of the second level. */
 enum { MOST = 256 };
 
@@ -41,28 +43,19 @@ void arrivals_add(struct world *w, struct message *m)
     a->message[a->n++] = m;
 }
 
-/* What the match needs is reached in three steps: the message has its receiver, that has its first
- * posted receive. */
-static inline void warm_up(const struct arrivals *a, int i)
-{
-    enum { FAR = 12, MIDDLE = 8, NEAR = 4 };
-    if (i + FAR < a->n)
-        for (int line = 0; line < 3; line++)
-            __builtin_prefetch((const char *)a->message[i + FAR] + 64 * line);
-    if (i + MIDDLE < a->n) __builtin_prefetch(&a->message[i + MIDDLE]->to->stages);
-    if (i + NEAR >= a->n) return;
-    const char *posted = (const char *)a->message[i + NEAR]->to->posted;
-    if (!posted) return;
-    __builtin_prefetch(posted);
-    __builtin_prefetch(posted + 64);
-}
-
+/* Each receiver goes on before the next message is matched, as if it had come alone: what ranks
+ * send then enters the network in the same order, which decides between heads that are alike in
+ * time, port and number. */
 void arrivals_give(struct world *w)
 {
+    enum { FAR = 9, MIDDLE = 6, NEAR = 3 };
     struct arrivals *a = w->arrivals;
-    for (int i = 0; i < a->n; i++) {
-        warm_up(a, i);
+    for (int i = 0; i < a->n && !w->stopped; i++) {
+        if (i + FAR < a->n) arrivals_warm_message(a->message[i + FAR]);
+        if (i + MIDDLE < a->n) arrivals_warm_receiver(a->message[i + MIDDLE]->to);
+        if (i + NEAR < a->n) arrivals_warm_stack(a->message[i + NEAR]->to);
         w->arrived(a->message[i]);
+        world_resume(w, INT64_MAX);
     }
     a->n = 0;
 }

@@ -3,6 +3,7 @@
 #include "vp/explain.h"
 #include "vp/path.h"
 #include "vp/vp.h"
+#include "vp/windows.h"
 
 /* The network knows nodes; ranks are needed for the record of what binds alone. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
@@ -14,7 +15,9 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
     if (!w->shared_channel || m->net.src != m->net.dst) {
         char why[256];
         /* A message that is not sent does not matter any more: the run has ended. */
-        if (net_takes(w->net, m->net.bytes, why, sizeof why)) net_send(w->net, &m->net);
+        const bool takes = net_takes(w->net, m->net.bytes, why, sizeof why);
+        if (takes && w->windows) windows_post(w, m);
+        else if (takes) net_send(w->net, &m->net);
         else vp_record_failure((struct vp *)from, NULL, 0, why);
         return;
     }

@@ -53,7 +53,8 @@ static void append(struct pieces *p, struct piece piece, struct world *w)
 void offload_computed(struct vp *v, sim_ps begin)
 {
     struct world *w = v->world;
-    if (w->machine->software.offload != OFFLOAD_NONE || v->clock == begin) return;
+    /* Only hand-shakes ask. */
+    if (w->machine->software.offload != OFFLOAD_NONE || w->eager_only || v->clock == begin) return;
     if (v->pieces == NULL) v->pieces = TAKE(w->scratch, 1, struct pieces);
     struct pieces *p = v->pieces;
     /* Counted work that follows counted work is one piece: nothing is answered in between. */

@@ -22,7 +22,7 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
     m->send = r;
     if (r)
         *r = (struct comm_request){.bytes = m->bytes,
-                                   .peer = m->to->comm.rank,
+                                   .peer = (int)(m->to - v->world->vp),
                                    .tag = m->tag,
                                    .active = REQUEST_SENDING,
                                    .file = v->comm.file,

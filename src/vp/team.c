@@ -13,7 +13,6 @@
 
 #include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
-#include "spec/topology_list.h"
 #include "vp/team_parts.h"
 
 /* --- threads ---------------------------------------------------------------------------------- */
@@ -27,8 +26,7 @@ static void tell_heartbeat(struct share *s)
     s->told = s->world.nfinished;
 }
 
-/* For tests: a thread loses its processor for a while, where it would matter most. */
-static void delay(struct worker *k)
+void team_delay(struct worker *k)
 {
     if (!k->team->world->load->delays || random_below(&k->random, 4) != 0) return;
     const struct timespec pause = {0, random_below(&k->random, 60) * 1000};
@@ -41,7 +39,7 @@ static void run_share(struct worker *k, struct share *s)
     struct team *t = k->team;
     struct world *w = &s->world;
     atomic_store(&s->state, RUNNING);
-    delay(k);
+    team_delay(k);
     /* Messages are taken from and given back to this thread's own pool, whoever made them. */
     w->pool = &k->pool;
     /* Its ranks are made by the thread that begins with them, which brings their memory. */
@@ -58,7 +56,7 @@ static void run_share(struct worker *k, struct share *s)
         team_wake_all(t);
         return;
     }
-    delay(k);
+    team_delay(k);
     /* More to do, or new messages since it looked: to the end of the queue. Else it is idle, and
      * the last one that is ends the run. */
     int running = RUNNING;
@@ -196,7 +194,8 @@ static void make_shares(struct team *t)
         s->world.first = first;
         s->world.nown = left < 1 << t->shift ? left : 1 << t->shift;
         s->world.ready = w->ready + first;
-        s->world.net = net_share(w->net, s, w->scratch);
+        /* Windows leave the network to one thread. */
+        if (!w->windows) s->world.net = net_share(w->net, s, w->scratch);
         s->out = TAKE(w->scratch, t->nshare, struct batch *);
         s->touched = TAKE(w->scratch, t->nshare, int);
         /* Neighbours to one thread: most messages stay near. */
@@ -220,21 +219,19 @@ static void make_workers(struct team *t)
     }
 }
 
-/* A system that refuses a thread leaves its work to the others. */
-static void go(struct team *t)
+void team_go(struct team *t, void *(*run)(void *worker))
 {
     int nthread = 1;
     for (; nthread < t->nworker; nthread++)
-        if (pthread_create(&t->worker[nthread].thread, NULL, work, &t->worker[nthread]) != 0) break;
-    work(&t->worker[0]);
+        if (pthread_create(&t->worker[nthread].thread, NULL, run, &t->worker[nthread]) != 0) break;
+    run(&t->worker[0]);
     for (int i = 1; i < nthread; i++) pthread_join(t->worker[i].thread, NULL);
 }
 
-/* What the shares know becomes the world's. A deadlock is explained from the ranks' own states,
- * which are those of a run on one thread: whoever can go on does, in any order. */
-static void gather(struct team *t)
+void team_gather(struct team *t)
 {
     struct world *w = t->world;
+    w->nfinished = 0;
     int inside = t->inside + (atomic_load(&t->whole) ? w->nown : 0);
     for (int i = t->first; i < t->end; i++) inside += t->share[i].world.barrier_count;
     w->barrier_count = inside;
@@ -249,7 +246,7 @@ static void gather(struct team *t)
 }
 
 /* Batches are left only where the run was stopped. */
-static void destroy(struct team *t)
+void team_destroy(struct team *t)
 {
     for (int i = t->first; i < t->end; i++) {
         struct share *s = &t->share[i];
@@ -270,32 +267,7 @@ static void destroy(struct team *t)
     pthread_cond_destroy(&t->news);
 }
 
-/* In the order in which a user would change it: the program, the machine, what is recorded. The
- * conditions are those under which the ranks are a Kahn network (team.h), and what keeps its
- * records in the order of events. */
-const char *world_alone(const struct machine_spec *m, const struct world_load *load,
-                        const struct record_spec *record)
-{
-    if (load->foreign) return "the program is not a built-in one";
-    if (load->meets) return "the network does a collective of all ranks";
-    if (load->timed) return "receives from anybody and tests depend on time";
-    if (m->network.level != LEVEL_LOGGP || topology_has(m->topology.family, TOPOLOGY_SHARED))
-        return "messages wait for each other at links (network.level loggp has none)";
-    if (m->topology.nfailed_link + m->topology.nfailed_router > 0)
-        return "ways around what failed are found as they are needed";
-    if (m->topology.processors_per_node > 1) return "processors of a node share a port";
-    if (m->software.kernel_server) return "one kernel server serves the whole machine";
-    if (!software_all_eager(&m->software, load->largest_message))
-        return "large messages shake hands";
-    if (m->noise.background_load > 0) return "other jobs' traffic follows time";
-    if (record->spans) return "a timeline is recorded";
-    if (record->balance) return "computing follows a table of shares";
-    return record->path ? "a critical path is recorded" : NULL;
-}
-
-/* From the outside in, and back: shares, threads, post. Every own share is queued once, since all
- * ranks are ready at time 0; from then on only what comes queues it. */
-void team_run(struct world *w, uint64_t seed)
+struct team *team_create(struct world *w, uint64_t seed)
 {
     const int most = w->nrank < MOST_THREADS ? w->nrank : MOST_THREADS;
     struct team *t = TAKE(w->scratch, 1, struct team);
@@ -307,15 +279,23 @@ void team_run(struct world *w, uint64_t seed)
     CHECK(pthread_mutex_init(&t->lock, NULL) == 0 && pthread_cond_init(&t->news, NULL) == 0);
     make_shares(t);
     make_workers(t);
+    return t;
+}
+
+/* From the outside in, and back: shares, threads, post. Every own share is queued once, since all
+ * ranks are ready at time 0; from then on only what comes queues it. */
+void team_run(struct world *w, uint64_t seed)
+{
+    struct team *t = team_create(w, seed);
     if (w->load->hosts) t->post = post_open(w->load->hosts, w->load->job_run);
     atomic_store(&t->active, t->end - t->first);
     for (int i = t->first; i < t->end; i++) {
         atomic_store(&t->share[i].state, QUEUED);
         team_enqueue(t, &t->share[i]);
     }
-    go(t);
-    gather(t);
+    team_go(t, work);
+    team_gather(t);
     w->failed = w->failed || t->state == POST_FAILED;
     w->broken = t->state == POST_BROKEN;
-    destroy(t);
+    team_destroy(t);
 }

@@ -77,6 +77,23 @@ struct team {
     _Atomic int barriers;
 };
 
+/* --- team.c --- */
+
+/* team_create: shares and workers for w->load->threads threads; nobody runs yet. team_go: run(k)
+ * on each of them, worker 0 on the caller's own thread, until all have returned; a system that
+ * refuses a thread leaves its work to the others. team_gather: what the shares know becomes the
+ * world's; a deadlock is explained from the ranks' own states, which are those of a run on one
+ * thread: whoever can go on does, in any order. team_destroy: what the team has beside the run's
+ * scratch. */
+struct team *team_create(struct world *w, uint64_t seed);
+void team_go(struct team *t, void *(*run)(void *worker));
+void team_gather(struct team *t);
+void team_destroy(struct team *t);
+
+/* team_delay: for tests: k's thread loses its processor for a while, where it would matter most
+ * (world_load.delays). */
+void team_delay(struct worker *k);
+
 /* --- team_queue.c --- */
 
 /* team_enqueue: s, which is QUEUED, at the end of its thread's queue. team_look_around: the next

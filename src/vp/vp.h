@@ -1,9 +1,9 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
- * Files: world.c builds and runs, team.c on several threads; vp_comm.c is comm.h for a virtual
- * processor; clock.c its time; mailbox.c matches messages, matching.c, poll.c and timer.c where
- * time decides; arrivals.c, pool.c, launch.c, rendezvous.c carry them; server.c is the shared
- * kernel server; background.c loads the links; deadlock.c and failure.c explain. */
+ * Files: world.c builds and runs, team.c, windows.c on threads; vp_comm.c is comm.h for a virtual
+ * processor; clock.c its time; mailbox.c matches messages, matching.c, poll.c, timer.c where time
+ * decides; arrivals.c, pool.c, launch.c, rendezvous.c carry them; server.c is the shared kernel
+ * server; background.c loads the links; deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
 
@@ -88,8 +88,8 @@ struct world {
     int ready_head, ready_count;
     struct message_pool *pool; /* of the host thread */
     struct arrivals *arrivals; /* until receivers go on (arrivals.h); NULL: none */
-    /* of several threads: each share of the ranks has its world (team.h); NULL: one */
-    struct team *team;
+    struct team *team; /* several threads, each share of ranks its world (team.h); NULL: one */
+    struct windows *windows; /* they go by windows of time (windows.h); NULL: they do not */
     /* what several jobs share: ring, `stopped`, server (jobs.h); itself where there is one */
     struct world *whole;
     int job;      /* number among them, from 0 */

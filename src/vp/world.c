@@ -14,7 +14,6 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "machine/node_use.h"
-#include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
 #include "vp/arrivals.h"
 #include "vp/explain.h"
@@ -24,6 +23,7 @@
 #include "vp/meeting.h"
 #include "vp/path.h"
 #include "vp/team.h"
+#include "vp/windows.h"
 #include "vp/vp.h"
 #include "vp/world_parts.h"
 
@@ -51,7 +51,8 @@ void world_deliver(void *context, struct net_message *m)
 {
     struct world *w = context;
     struct message *own = (struct message *)m;
-    if (w->arrivals) arrivals_add(w, own);
+    if (w->windows) windows_deliver(w, own);
+    else if (w->arrivals) arrivals_add(w, own);
     else if (w->team && team_elsewhere(w, own)) team_post(w, own);
     else world_arrived(own);
 }
@@ -67,15 +68,6 @@ void world_make_tables(struct world *w)
 
 /* Often enough for a display, and too seldom to cost anything. */
 enum { PULSE_EVENTS = 1 << 14 }; /* 5 to 30 ms of the host */
-
-static void tell_heartbeat(const struct world *w)
-{
-    struct run_heartbeat *p = w->load->heartbeat;
-    if (!p) return;
-    atomic_store_explicit(&p->events, sim_events(w->sim), memory_order_relaxed);
-    atomic_store_explicit(&p->ended, w->nfinished, memory_order_relaxed);
-    if (p->beat) p->beat(p->context);
-}
 
 /* Ranks run ahead until they wait; only then is it safe to let simulated time pass. So no
  * event is taken while a rank could still do something earlier: conservative simulation
@@ -93,22 +85,10 @@ void world_loop(struct world *w)
         }
         if (w->ready_count) world_resume(w, INT64_MAX);
         if (--quiet_events <= 0) {
-            tell_heartbeat(w);
+            world_tell_heartbeat(w);
             quiet_events = PULSE_EVENTS;
         }
     } while (!w->stopped && sim_step(w->sim));
-}
-
-/* Another thread reads these, and needs none of them in step with another: relaxed order
- * is enough. */
-void world_begin_heartbeat(const struct world *w, double now)
-{
-    struct run_heartbeat *p = w->load->heartbeat;
-    if (!p) return;
-    atomic_store_explicit(&p->events, 0, memory_order_relaxed);
-    atomic_store_explicit(&p->ended, 0, memory_order_relaxed);
-    atomic_store_explicit(&p->nrank, w->nrank, memory_order_relaxed);
-    atomic_store_explicit(&p->begin, now, memory_order_relaxed);
 }
 
 static int64_t stack_bytes(const struct world *w)
@@ -244,6 +224,14 @@ bool world_make_network(struct world *w, bool links, struct err *e)
     return true;
 }
 
+/* Several threads, and the order of time matters. */
+static bool by_windows(const struct world *w)
+{
+    return w->load->threads > 1 && !w->load->hosts &&
+           world_ordered(w->machine, w->load, w->record) &&
+           !world_alone(w->machine, w->load, w->record);
+}
+
 /* From the outside in: topology, places of ranks, network, stacks. Whatever fails has set
  * the error; world_run gives everything back. */
 static bool build(struct world *w, struct err *e)
@@ -258,7 +246,8 @@ static bool build(struct world *w, struct err *e)
     w->software = software_cost_used(m, &use);
     w->result->working_set = w->load->working_set;
     if (!world_make_network(w, w->record->links, e)) return false;
-    if (!arrivals_make(w)) arrivals_foresee(w);
+    /* Threads ask for memory window by window. */
+    if (!by_windows(w) && !arrivals_make(w)) arrivals_foresee(w);
     meeting_create(w);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
@@ -304,7 +293,10 @@ static void run(struct world *w, uint64_t seed)
     /* Programs of users are watched by whoever loads them. */
     if (w->load->overflowed && !w->load->foreign)
         w->fault = stack_fault_begin(w->fibers, tell_overflow, w);
-    if ((w->load->threads > 1 || w->load->hosts) && !world_alone(w->machine, w->load, w->record)) {
+    if (by_windows(w)) {
+        windows_run(w, seed);
+    } else if ((w->load->threads > 1 || w->load->hosts) &&
+               !world_ordered(w->machine, w->load, w->record)) {
         team_run(w, seed);
     } else {
         world_make_ranks(w, seed);
@@ -367,7 +359,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
     w.whole = &w;
     if (load->hosts) {
         int end;
-        CHECK(!world_alone(m, load, record));
+        CHECK(!world_ordered(m, load, record));
         team_part(load, load->hosts->rank, &w.first, &end);
         w.nown = end - w.first;
         if (load->hosts->rank > 0) w.published = &published;

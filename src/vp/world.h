@@ -75,8 +75,12 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
  * process 0 then gets the whole result; the others' has the status and their own ranks' part. */
 void world_part(const struct world_load *load, int *first, int *end);
 
-/* world_alone: why world_run would use one host thread for such a run, whatever load->threads says;
- * NULL: it may use several. A constant text. */
+/* world_ordered: why things must happen in the order of simulated time in such a run; NULL: its
+ * ranks may go on in any order (vp/team.h), in threads and in processes. A constant text.
+ * world_alone: why world_run would use one host thread for it, whatever load->threads says; NULL:
+ * it may use several, by windows of simulated time (vp/windows.h) where the order matters. */
+const char *world_ordered(const struct machine_spec *m, const struct world_load *load,
+                          const struct record_spec *record);
 const char *world_alone(const struct machine_spec *m, const struct world_load *load,
                         const struct record_spec *record);
 

@@ -30,6 +30,9 @@ void world_name_stages(struct run_result *r, int nstage, const char *const *name
 /* world_begin_heartbeat: the run begins at `now`, wall time [s]. */
 void world_begin_heartbeat(const struct world *w, double now);
 
+/* world_tell_heartbeat: how far w's run is. */
+void world_tell_heartbeat(const struct world *w);
+
 /* world_loop: let all ready ranks go on, take an event, and so on until there is none. */
 void world_loop(struct world *w);
 

@@ -73,17 +73,22 @@ static void threads_are_those_asked_for_or_worth_their_messages(void **state)
     const int mine = CPU_COUNT(&set);
     /* what is asked for holds, and is one at least */
     for (int asked = 1; asked < 200; asked *= 3)
-        assert_int_equal(launch_threads(asked, 4, 1), asked);
-    assert_int_equal(launch_threads(RUN_THREADS_AUTO, 4, 1), 1);
-    assert_int_equal(launch_threads(RUN_THREADS_AUTO, 1, 1 << 20), 1);
-    assert_int_equal(launch_threads(RUN_THREADS_AUTO, mine + 5, 1 << 20), mine);
+        assert_int_equal(launch_threads(asked, 4, 1, asked % 2 == 0), asked);
+    assert_int_equal(launch_threads(RUN_THREADS_AUTO, 4, 1, false), 1);
+    assert_int_equal(launch_threads(RUN_THREADS_AUTO, 1, 1 << 20, false), 1);
+    assert_int_equal(launch_threads(RUN_THREADS_AUTO, mine + 5, 1 << 20, false), mine);
     /* never more than this process may use, nor than there are processors for it */
     int before = 1;
     for (int nrank = 1; nrank <= 1 << 20; nrank *= 2) {
-        const int all = launch_threads(RUN_THREADS_AUTO, 0, nrank),
-                  two = launch_threads(RUN_THREADS_AUTO, 2, nrank);
+        const int all = launch_threads(RUN_THREADS_AUTO, 0, nrank, false),
+                  two = launch_threads(RUN_THREADS_AUTO, 2, nrank, false),
+                  windows = launch_threads(RUN_THREADS_AUTO, 0, nrank, true);
         assert_true(all >= before && all <= mine && all <= nrank);
         assert_int_equal(two, all < 2 ? all : 2);
+        /* windows need more ranks for each, and few threads have enough of the network */
+        assert_true(windows >= 1 && windows <= all && windows <= 4);
+        if (nrank < 4096) assert_int_equal(windows, 1);
+        if (nrank == 4096 && mine >= 2) assert_int_equal(windows, 2);
         before = all;
     }
     assert_int_equal(before, mine);

@@ -11,6 +11,7 @@
 #include "vp/world.h"
 
 #include "crossbar.h"
+#include "outcome.h"
 
 enum { RANKS = 97 }; /* no multiple of anything: shares are of different sizes */
 
@@ -24,11 +25,6 @@ static struct machine_spec noisy_crossbar(int nodes)
     m.noise.compute_cv = 0.2;
     return m;
 }
-
-struct outcome {
-    struct arena *arena;
-    struct run_result r;
-};
 
 /* Of exchanges, for each rank: a rank that never ends frees nothing. */
 enum { MOST = 3000 };
@@ -54,21 +50,6 @@ static struct outcome go(world_program *program, int nrank, int threads, uint64_
     if (!world_run(&m, &load, &record, 7, o.arena, &o.r, &e)) fail_msg("%s", e.text);
     free(buffers);
     return o;
-}
-
-static void same(const struct run_result *a, const struct run_result *b)
-{
-    assert_int_equal(a->status, b->status);
-    assert_string_equal(a->text, b->text);
-    assert_int_equal(a->digest, b->digest);
-    assert_int_equal(a->makespan_ps, b->makespan_ps);
-    assert_int_equal(a->messages, b->messages);
-    assert_int_equal(a->bytes, b->bytes);
-    assert_int_equal(a->nlink, b->nlink);
-    assert_memory_equal(a->stage, b->stage,
-                        (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
-    assert_memory_equal(a->finish_ps, b->finish_ps, (size_t)a->nrank * sizeof *a->finish_ps);
-    if (a->nlink) assert_memory_equal(a->link, b->link, (size_t)a->nlink * sizeof *a->link);
 }
 
 /* The run on one thread against N threads, undisturbed and with delays of several seeds. */
@@ -211,7 +192,7 @@ static void a_failure_is_a_failure(void **state)
     }
 }
 
-/* Each reason for one thread, and that such a run is made all the same. */
+/* Each reason for the order of time. */
 static void what_depends_on_order_says_so(void **state)
 {
     (void)state;
@@ -224,25 +205,26 @@ static void what_depends_on_order_says_so(void **state)
                               .largest_message = -1,
                               .threads = 2},
                       changed;
+    assert_null(world_ordered(&m, &load, &nothing));
     assert_null(world_alone(&m, &load, &nothing));
-    assert_non_null(strstr(world_alone(&m, &load, &spans), "timeline"));
-    assert_non_null(strstr(world_alone(&m, &load, &path), "critical path"));
+    assert_non_null(strstr(world_ordered(&m, &load, &spans), "timeline"));
+    assert_non_null(strstr(world_ordered(&m, &load, &path), "critical path"));
     changed = load, changed.timed = true;
-    assert_non_null(strstr(world_alone(&m, &changed, &nothing), "anybody"));
+    assert_non_null(strstr(world_ordered(&m, &changed, &nothing), "anybody"));
     changed = load, changed.foreign = true;
-    assert_non_null(strstr(world_alone(&m, &changed, &nothing), "built-in"));
+    assert_non_null(strstr(world_ordered(&m, &changed, &nothing), "built-in"));
     other = m, other.network.level = LEVEL_LINK;
-    assert_non_null(strstr(world_alone(&other, &load, &nothing), "links"));
+    assert_non_null(strstr(world_ordered(&other, &load, &nothing), "links"));
     other = m, other.topology.processors_per_node = 2;
-    assert_non_null(strstr(world_alone(&other, &load, &nothing), "port"));
+    assert_non_null(strstr(world_ordered(&other, &load, &nothing), "port"));
     other = m, other.software.kernel_server = true;
-    assert_non_null(strstr(world_alone(&other, &load, &nothing), "server"));
+    assert_non_null(strstr(world_ordered(&other, &load, &nothing), "server"));
     other = m, other.software.eager_bytes = 1000;
-    assert_non_null(strstr(world_alone(&other, &load, &nothing), "hands"));
+    assert_non_null(strstr(world_ordered(&other, &load, &nothing), "hands"));
     changed = load, changed.largest_message = 1000; /* none of its messages is large */
-    assert_null(world_alone(&other, &changed, &nothing));
+    assert_null(world_ordered(&other, &changed, &nothing));
     other = m, other.noise.background_load = 0.1;
-    assert_non_null(strstr(world_alone(&other, &load, &nothing), "traffic"));
+    assert_non_null(strstr(world_ordered(&other, &load, &nothing), "traffic"));
 }
 
 int main(void)
