@@ -1,7 +1,7 @@
 -- Latency and accepted load of networks against offered load, a drawing for each traffic: machines, routings and levels
 -- are curves. A load of 1 is one flit per node and cycle of a link.
 -- needs: mimdsim load t3e-300 --level packet
--- each: SELECT DISTINCT traffic, 'load-' || traffic FROM load_series ORDER BY 1
+-- each: SELECT DISTINCT traffic, 'load-' || traffic FROM load_series WHERE series IN (SELECT series FROM load_point) ORDER BY 1
 WITH shown AS (SELECT * FROM load_series WHERE traffic = ?1),
 -- a curve is called by what tells it from the others
 differ AS (

@@ -30,9 +30,7 @@ static bool take_messages(const struct run_result *r, struct load_recording *x, 
     int n = 0;
     for (int64_t i = 0; i < r->nspan && n < LOAD_MOST_MESSAGES; i++) {
         const struct span *p = &r->span[i];
-        /* a damaged database may name ranks that there are not */
-        if (p->kind != SPAN_SEND || p->peer < 0 || p->peer >= r->nrank || p->bytes < 0) continue;
-        if (p->end_ps < r->makespan_ps) send[n++] = p;
+        if (p->kind == SPAN_SEND && p->peer >= 0 && p->end_ps < r->makespan_ps) send[n++] = p;
     }
     if (n == 0) return err_set(e, ERR_DATA, "--traffic %.80s: the run sent no messages", word);
     /* repetitions follow each other, so the list is in the order of time */

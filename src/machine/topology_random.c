@@ -12,7 +12,11 @@
 #include "base/random.h"
 #include "machine/topology_graph.h"
 
-enum { MOST_DRAWS = 64, MOST_TRIES = 10000 };
+enum { MOST_DRAWS = 64, MOST_TRIES = 10000, MOST_PORTS = 1 << 24 };
+
+/* Ports looked at in all draws, about 1 s: routers x degree^2 for one draw, and many more where
+ * nearly all routers are joined to each other, as few pairs are left that chance must find. */
+static const int64_t most_looks = INT64_C(1) << 31;
 
 /* Port r k + i is port i of router r. */
 struct wiring {
@@ -20,17 +24,21 @@ struct wiring {
     int *peer; /* (n k) the port at the other end, -1: free */
     int *free; /* (nfree) ports */
     int nfree;
+    int64_t looks;
 };
 
-static bool joined(const struct wiring *w, int a, int b)
+static bool joined(struct wiring *w, int a, int b)
 {
+    const int *peer = w->peer + a * w->k;
+    const unsigned first = (unsigned)(b * w->k), k = (unsigned)w->k;
+    w->looks += w->k;
     for (int i = 0; i < w->k; i++)
-        if (w->peer[a * w->k + i] >= 0 && w->peer[a * w->k + i] / w->k == b) return true;
+        if ((unsigned)peer[i] - first < k) return true; /* a free one is the largest number */
     return false;
 }
 
 /* Whether ports p and q may be joined: of two routers that are not yet. */
-static bool may_join(const struct wiring *w, int p, int q)
+static bool may_join(struct wiring *w, int p, int q)
 {
     return p / w->k != q / w->k && !joined(w, p / w->k, q / w->k);
 }
@@ -57,7 +65,7 @@ static bool draw(struct wiring *w, struct random *r)
 {
     w->nfree = w->n * w->k;
     for (int i = 0; i < w->nfree; i++) w->free[i] = i, w->peer[i] = -1;
-    for (int tries = 0; w->nfree > 1 && tries < MOST_TRIES; tries++) {
+    for (int tries = 0; w->nfree > 1 && tries < MOST_TRIES && w->looks < most_looks; tries++) {
         int i = (int)random_below(r, (uint64_t)w->nfree);
         int j = (int)random_below(r, (uint64_t)w->nfree - 1);
         j += j >= i;
@@ -89,26 +97,33 @@ static bool random_create(struct topology *t, struct arena *a, struct err *e)
 {
     const struct topology_spec *s = t->spec;
     int n = s->dims[0], k = s->dims[1];
-    if (n < 4 || k < 3 || k >= n || n > INT32_MAX / 4 / k)
+    if (n < 4 || k < 3 || k >= n)
         return err_set(e, ERR_CONFIG,
                        "topology random-regular: %d routers of degree %d; expected at least 4 "
                        "routers and a degree of 3 to one less than there are routers",
                        n, k);
+    if (n > MOST_PORTS / k || (int64_t)n * k * k > most_looks)
+        return err_set(
+            e, ERR_CONFIG,
+            "topology random-regular: %d routers of degree %d; expected at most %d ports "
+            "(routers x degree) and routers x degree^2 up to %lld",
+            n, k, MOST_PORTS, (long long)most_looks);
     /* Every port may stand in the list of free ones. */
     const int nport = n * k;
     struct wiring w = {.n = n, .k = k, .peer = TAKE(a, nport, int), .free = TAKE(a, nport, int)};
     struct graph_cable *cable = TAKE(a, nport / 2 + 1, struct graph_cable);
     struct random r = random_make(s->seed, 0x6a656c6c79, 0); /* "jelly" */
-    for (int i = 0; i < MOST_DRAWS; i++) {
+    for (int i = 0; i < MOST_DRAWS && w.looks < most_looks; i++) {
         err_clear(e);
         t->nport = 0;
         if (draw(&w, &r) && graph_build(t, n, cable, list_cables(&w, cable), a, e)) return true;
     }
     err_clear(e);
-    return err_set(e, ERR_CONFIG,
-                   "topology random-regular: no connected graph of %d routers of degree %d in %d "
-                   "draws; expected a higher degree",
-                   n, k, MOST_DRAWS);
+    return err_set(
+        e, ERR_CONFIG,
+        "topology random-regular: chance finds no connected graph of %d routers of degree "
+        "%d; expected a degree further above 2 or further below the number of routers",
+        n, k);
 }
 
 const struct topology_type topology_random_regular = {

@@ -150,12 +150,15 @@ static bool read_mapping(const struct reading *r, const struct node *n)
     /* Each key becomes one setting or two; the same one twice is refused there. */
     for (const struct node *c = n->child; c != NULL; c = c->next) {
         bool ok;
-        if (strcmp(c->key, "kind") == 0 && c->text != NULL) ok = read_word(r, c);
+        const bool word = strcmp(c->key, "kind") == 0, seed = strcmp(c->key, "seed") == 0,
+                   spread = strcmp(c->key, "spread") == 0;
+        if ((word || seed || spread) && c->text == NULL)
+            ok = refuse(r, c, "expected one value, not a list or a mapping");
+        else if (word) ok = read_word(r, c);
         else if (strcmp(c->key, "list") == 0) ok = read_list(r, c);
         else if (strcmp(c->key, "file") == 0) ok = read_file(r, c);
-        else if (strcmp(c->key, "seed") == 0 && c->text != NULL)
-            ok = add(r, "machine.placement.seed", c->text, c->line);
-        else if (strcmp(c->key, "spread") == 0 && c->text != NULL)
+        else if (seed) ok = add(r, "machine.placement.seed", c->text, c->line);
+        else if (spread)
             ok = add(r, "machine.placement.spread", c->text, c->line);
         else {
             static const char all[] = "; expected kind, seed, spread, list or file";

@@ -12,6 +12,9 @@
 
 enum { MOST_RANKS = 1 << 24 };
 
+/* Of a message; as in schedules: no sum of them wraps. */
+static const int64_t most_bytes = INT64_C(1) << 50;
+
 /* What the rows of three queries fill, one after the other. */
 struct reading {
     struct arena *a;
@@ -66,32 +69,37 @@ static int kind_of(const char *word)
     return -1;
 }
 
-/* One span. NULL as peer or message is -1. Formats subtract times, have a part for each rank, and
- * there is room for as many as the first query counted, which a damaged index may contradict. */
+/* One span. NULL as peer or message is -1. Formats subtract times, have a part for each rank, load
+ * curves send the bytes from rank to rank again, and there is room for as many as the first query
+ * counted, which a damaged index may contradict. */
 static bool read_span(void *context, int ncolumn, const char *const *name,
                       const struct store_value *value)
 {
     struct reading *g = context;
-    const int64_t rank = value[0].integer, begin = value[3].integer, end = value[4].integer;
+    const int64_t rank = value[0].integer, begin = value[3].integer, end = value[4].integer,
+                  peer = value[5].kind == STORE_INT ? value[5].integer : -1,
+                  bytes = value[6].integer;
     const int kind = kind_of(value[2].text);
     (void)ncolumn;
     (void)name;
     if (rank < 0 || rank >= g->r->nrank || begin < 0 || end < begin || end > PS_LAST || kind < 0 ||
-        g->r->nspan == g->room)
+        g->r->nspan == g->room || peer < -1 || peer >= g->r->nrank || bytes < 0 ||
+        bytes > most_bytes)
         return err_set(g->err, ERR_DATA,
-                       "table span, span %lld of the run: rank %lld, kind '%.20s', %lld to %lld "
-                       "ps; expected a rank below %d, a known kind, times that do not fall",
-                       (long long)g->r->nspan, (long long)rank,
+                       "table span, span %lld of the run: rank %lld, peer %lld, kind '%.20s', %lld "
+                       "to %lld ps, %lld bytes; expected ranks below %d, a known kind, times that "
+                       "do not fall, at most %lld bytes",
+                       (long long)g->r->nspan, (long long)rank, (long long)peer,
                        value[2].text != NULL ? value[2].text : "NULL", (long long)begin,
-                       (long long)end, g->r->nrank);
+                       (long long)end, (long long)bytes, g->r->nrank, (long long)most_bytes);
     g->r->span[g->r->nspan++] =
         (struct span){.rank = (int)rank,
                       .stage = (int)value[1].integer,
                       .kind = (enum span_kind)kind,
                       .begin_ps = begin,
                       .end_ps = end,
-                      .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
-                      .bytes = value[6].integer,
+                      .peer = (int)peer,
+                      .bytes = bytes,
                       .message = value[7].kind == STORE_INT ? value[7].integer : -1};
     return true;
 }

@@ -4,6 +4,7 @@
  * simulation itself. */
 #include "study/network_remarks.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -187,7 +188,8 @@ static bool remark_collective(const struct run_spec *r, int64_t *left, struct ar
     if (!t || !placement_create(&place, &r->machine, t, r->nrank, a, &ignored)) return false;
     /* By the simulation's own functions: no formula is written twice. */
     c->links = meeting_links(&r->machine, t, &place);
-    c->seconds = (double)meeting_time(&r->machine.network, c->links, c->bytes) / SIM_PS_PER_S;
+    const int64_t time = meeting_time(&r->machine.network, c->links, c->bytes);
+    c->seconds = time > PS_LAST ? NAN : (double)time / SIM_PS_PER_S;
     return true;
 }
 
@@ -196,7 +198,8 @@ static void print_collective(const struct collective_remark *c, FILE *out)
 {
     /* With the prefix that people would use. */
     char time[48];
-    units_print(c->seconds, UNIT_TIME, time, (int)sizeof time);
+    if (isnan(c->seconds)) snprintf(time, sizeof time, "more than simulated time holds");
+    else units_print(c->seconds, UNIT_TIME, time, (int)sizeof time);
     fprintf(out, "%s of %lld B on %d ranks by the network of %s: %s after the last rank's entry",
             c->what, (long long)c->bytes, c->run->nrank, c->run->machine.name, time);
     /* A barrier has a time of its own, whatever its way. */

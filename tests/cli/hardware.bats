@@ -48,6 +48,12 @@ collective() {
     stderr_says "no hardware for barrier (software.barrier.kind)"
 }
 
+@test "a time beyond all simulated time is told as that, not as a number" {
+    works mimdsim explain allreduce-algorithms --machine infiniband-hdr-sharp --set kernel.algorithm=hardware --set ranks=16 \
+        --set kernel.message='4 KiB' --set machine.network.collective.bandwidth='1e-6 B/s'
+    stdout_says "more than simulated time holds after the last rank's entry"
+}
+
 @test "rules for hardware that is not there, and kinds that no network does, are refused with file and line" {
     printf 'schema_version: 1\nbase: paragon\nsoftware: {collectives: "allreduce hardware"}\n' >my.yaml
     fails_with 78 mimdsim check my.yaml

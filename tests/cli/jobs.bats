@@ -209,6 +209,7 @@ refused() {
     refused "s.yaml:8: jobs 'a' and 'b' overlap: rank 2 of one and rank 1 of the other on processor 2" "$(two_on '[0, 1, 2, 3]' '[9, 2, 10]')"
     refused "placement: 'everywhere': expected contiguous, random, groups, snake, gray, a list of processors or {file: NAME}" "$(two_on everywhere random)"
     refused "placement: 'randm': did you mean 'random'?" "$(two_on randm random)"
+    refused "job 'a': seed: 'a list or mapping': expected one value" "$(two_on '{kind: random, seed: [3]}' random)"
     refused "placement: unknown key 'fil'; did you mean 'file'?" "$(two_on '{fil: x}' random)"
     refused "job 'b' has 3 ranks, but its list names 2 processors" "$(two_on contiguous '[1, 2]')"
     refused "processor 32 of rank 0; expected 0 to 31" "$(two_on contiguous '[32, 1, 2]')"

@@ -108,6 +108,23 @@ setup_file() { :; }
     fails_with 66 mimdsim load small.yaml --traffic program.db:999
     works mimdsim run pingpong -q -o plain.db
     fails_with 66 mimdsim load small.yaml --traffic plain.db:1
+    # a series that has no point yet, beside one that has
+    sqlite3 mimdsim.db "INSERT INTO load_series SELECT 'x', machine, routing, level, 'a', nodes, message_bytes, message_flits, cycle_ps,
+        empty_ps, bound, saturation, saturation_low, saturation_high, probes, note FROM load_series"
+    works mimdsim plot mimdsim.db load
+    # messages that no run sends
+    while IFS='#' read -r text change; do
+        cp program.db damaged.db
+        sqlite3 damaged.db "UPDATE span SET $change WHERE run_id = $run AND kind = 'send'"
+        fails_with 65 mimdsim load small.yaml --traffic "damaged.db:$run" --rates 0.01 --no-saturation
+        stderr_says "$text"
+        fails_with 65 mimdsim timeline damaged.db "$run" --format text
+    done <<'END'
+9223372036854775807 bytes; expected#bytes = 9223372036854775807
+-1 bytes; expected#bytes = -1
+peer 16, kind 'send'#peer = 16
+peer 2147483648, kind 'send'#peer = 2147483648
+END
     sed 's/4, 4/2, 2/' small.yaml >tiny.yaml
     fails_with 78 mimdsim load tiny.yaml --traffic "program.db:$run" -q
     stderr_says "16"

@@ -2,27 +2,36 @@
  * program, and judges what is left: a message, a documented status, no half-written file, a
  * database that is whole.
  *
- *     every PROGRAM LIBRARY DATA [--most N] [--step N] [--kind KIND] [COMMAND...]
+ *     every PROGRAM LIBRARY DATA [--branches|--thin] [--each] [--most N] [--step N] [--kind KIND]
+ *         [COMMAND...]
  *
  * PROGRAM is mimdsim, LIBRARY the one of fail.c, DATA the folder with tests/. --step N: one call of
  * N is let fail;
- * --most N: at most N of each kind in each command; --kind: only this kind; otherwise all. What a
+ * --most N: at most N of each kind in each command; --kind: only this kind; otherwise all.
+ * --branches: allocations fail in branches of one process instead of each in a process that begins
+ * anew (branch.h), which takes a tenth of the time and needs the right to mount; --thin: likewise,
+ * and of many from one place some. --each: a line for each; --first N: from the N-th. What a
  * command does without a failure is the measure: where one is survived, with status 0, everything
  * must be as without it; else the command must work when it is given again. */
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
+#include <poll.h>
+#include <sched.h>
 #include <signal.h>
-#include <sqlite3.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_FILES = 256, MOST_WORDS = 12, TEXT = 1 << 16, PATIENCE_S = 60 };
+#include "branch.h"
+#include "outcome.h"
+
+enum { MOST_WORDS = 12, PATIENCE_S = 60 };
 
 /* What is let fail, and how: the statuses that may come of it beside 0. */
 static const struct fault {
@@ -73,35 +82,12 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 static struct {
     const char *program, *library, *data, *kind;
     char folder[64], gnuplot[96];
-    long step, most;
+    bool branches, thin, each;
+    long first, step, most;
     long made, survived, told, wrong;
 } all = {.step = 1};
 
-/* How a command has ended, and what it has left: names and contents of files, rows of databases. */
-struct outcome {
-    int status; /* of the shell: 128 and the signal; 124: it had to be ended */
-    char out[TEXT], err[TEXT];
-    int nfile;
-    struct {
-        char name[128];
-        unsigned long long print; /* of the content; of databases: of the rows */
-    } file[MOST_FILES];
-};
-
 static struct outcome usual, now, again;
-
-static unsigned long long print_of(unsigned long long print, const void *data, size_t n)
-{
-    for (const unsigned char *c = data; n > 0; n--, c++)
-        print = (print ^ *c) * 1099511628211ULL; /* FNV-1a */
-    return print;
-}
-
-static void die(const char *what)
-{
-    fprintf(stderr, "every: %s: %s\n", what, strerror(errno));
-    exit(2);
-}
 
 static void shell(const char *format, const char *a, const char *b)
 {
@@ -110,101 +96,13 @@ static void shell(const char *format, const char *a, const char *b)
     if (system(line) != 0) die(line);
 }
 
-static bool ends_in(const char *s, const char *end)
-{
-    const size_t n = strlen(s), m = strlen(end);
-    return n >= m && strcmp(s + n - m, end) == 0;
-}
-
-/* --- what is left ----------------------------------------------------------------------------- */
-
-/* The rows of a query as a print; *bad when it cannot be asked. */
-static unsigned long long rows_of(sqlite3 *db, const char *sql, bool *bad)
-{
-    unsigned long long print = 14695981039346656037ULL;
-    sqlite3_stmt *q = NULL;
-    int code = sqlite3_prepare_v2(db, sql, -1, &q, NULL);
-    while (code == SQLITE_OK || code == SQLITE_ROW) {
-        code = sqlite3_step(q);
-        for (int i = 0; code == SQLITE_ROW && i < sqlite3_column_count(q); i++) {
-            const char *text = (const char *)sqlite3_column_text(q, i);
-            if (text) print = print_of(print, text, strlen(text) + 1);
-        }
-    }
-    if (code != SQLITE_DONE) *bad = true;
-    sqlite3_finalize(q);
-    return print;
-}
-
-/* Whether it is whole; its rows, but for what the host's clock says, as a print. */
-static unsigned long long look_at_database(const char *path, char *why, size_t size)
-{
-    sqlite3 *db = NULL;
-    bool bad = sqlite3_open_v2(path, &db, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK;
-    const unsigned long long whole = rows_of(
-                                 db, "SELECT integrity_check FROM pragma_integrity_check", &bad),
-                             ok = print_of(14695981039346656037ULL, "ok", 3);
-    if (bad || whole != ok) snprintf(why, size, "%s is damaged", path);
-    const unsigned long long none = 14695981039346656037ULL;
-    if (rows_of(db, "SELECT \"table\" FROM pragma_foreign_key_check", &bad) != none)
-        snprintf(why, size, "%s: rows refer to rows that are not there", path);
-    unsigned long long print =
-        rows_of(db,
-                "SELECT r.config_hash, r.status, r.makespan_ps, r.digest, (SELECT count(*) FROM "
-                "stage WHERE run_id = r.id), (SELECT count(*) FROM run_setting WHERE run_id = "
-                "r.id), (SELECT count(*) FROM baseline WHERE run_id = r.id), (SELECT count(*) FROM "
-                "error_check WHERE run_id = r.id) FROM run r ORDER BY 1",
-                &bad);
-    if (bad) snprintf(why, size, "%s cannot be read: %s", path, sqlite3_errmsg(db));
-    sqlite3_close(db);
-    return print;
-}
-
-static struct outcome *filled;
-static char bad_file[256];
-
-static int add_file(const char *path, const struct stat *info, int type, struct FTW *place)
-{
-    (void)place;
-    if (type != FTW_F || ends_in(path, "-wal") || ends_in(path, "-shm")) return 0;
-    if (filled->nfile == MOST_FILES) return 0;
-    unsigned long long print = 14695981039346656037ULL;
-    if (ends_in(path, ".db")) print = look_at_database(path, bad_file, sizeof bad_file);
-    else {
-        char buffer[8192];
-        FILE *in = fopen(path, "rb");
-        for (size_t n; in && (n = fread(buffer, 1, sizeof buffer, in)) > 0;)
-            print = print_of(print, buffer, n);
-        if (in) fclose(in);
-    }
-    (void)info;
-    snprintf(filled->file[filled->nfile].name, sizeof filled->file->name, "%s", path);
-    filled->file[filled->nfile++].print = print;
-    return 0;
-}
-
-static void look(struct outcome *o)
-{
-    o->nfile = 0;
-    bad_file[0] = '\0';
-    filled = o;
-    nftw(".", add_file, 8, FTW_PHYS);
-}
-
-static const unsigned long long *find(const struct outcome *o, const char *name)
-{
-    for (int i = 0; i < o->nfile; i++)
-        if (strcmp(o->file[i].name, name) == 0) return &o->file[i].print;
-    return NULL;
-}
-
 /* --- a command -------------------------------------------------------------------------------- */
 
-static void read_back(const char *path, char text[TEXT])
+static void read_back(const char *path, char text[OUTCOME_TEXT])
 {
     FILE *in = fopen(path, "r");
     if (!in) die(path);
-    text[fread(text, 1, TEXT - 1, in)] = '\0';
+    text[fread(text, 1, OUTCOME_TEXT - 1, in)] = '\0';
     fclose(in);
 }
 
@@ -235,6 +133,20 @@ static _Noreturn void become(const char *line, const struct fault *f, long at)
     _exit(126);
 }
 
+static int shell_status(int status)
+{
+    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/* What a command has left that has ended with `status`. */
+static void read_outcome(struct outcome *o, int status)
+{
+    o->status = status;
+    read_back("../out", o->out);
+    read_back("../err", o->err);
+    outcome_look(o);
+}
+
 static void give(const char *line, const struct fault *f, long at, struct outcome *o)
 {
     pid_t child = fork();
@@ -243,12 +155,7 @@ static void give(const char *line, const struct fault *f, long at, struct outcom
     /* A command that waits for ever is a finding of its own. */
     while (waitpid(child, &status, WNOHANG) == 0 && waited++ < PATIENCE_S * 1000) usleep(1000);
     if (waited >= PATIENCE_S * 1000) kill(child, SIGKILL), waitpid(child, &status, 0);
-    o->status = waited >= PATIENCE_S * 1000 ? 124
-                : WIFSIGNALED(status)       ? 128 + WTERMSIG(status)
-                                            : WEXITSTATUS(status);
-    read_back("../out", o->out);
-    read_back("../err", o->err);
-    look(o);
+    read_outcome(o, waited >= PATIENCE_S * 1000 ? 124 : shell_status(status));
 }
 
 /* --- the judgement ---------------------------------------------------------------------------- */
@@ -265,10 +172,11 @@ static bool is_one_of(int status, const char *statuses)
 static const char *judge_files(const struct outcome *before)
 {
     static char why[512];
-    if (bad_file[0]) return bad_file;
+    if (now.bad[0]) return now.bad;
     for (int i = 0; i < now.nfile; i++) {
         const char *name = now.file[i].name;
-        const unsigned long long *old = find(before, name), *new = find(&usual, name);
+        const unsigned long long *old = outcome_find(before, name),
+                                 *new = outcome_find(&usual, name);
         if (old && *old == now.file[i].print) continue;
         if (new &&*new == now.file[i].print) continue;
         /* A report tells which figures could not be drawn, and leaves out what cannot be read, with
@@ -282,20 +190,34 @@ static const char *judge_files(const struct outcome *before)
     return NULL;
 }
 
-static bool same(const struct outcome *a, const struct outcome *b)
+/* The same command in what the failed one has left. Most leave the same as others, byte by byte:
+ * that is tried once. */
+static const char *judge_again(const struct command *c)
 {
-    if (a->nfile != b->nfile) return false;
-    for (int i = 0; i < a->nfile; i++) {
-        const unsigned long long *other = find(b, a->file[i].name);
-        if (!other || *other != a->file[i].print) return false;
+    enum { KEPT = 4096 };
+    static struct {
+        const struct command *command;
+        unsigned long long state;
+        char why[128];
+    } kept[KEPT];
+    const size_t at = now.state % KEPT;
+    if (kept[at].command != c || kept[at].state != now.state) {
+        kept[at].command = c, kept[at].state = now.state;
+        kept[at].why[0] = '\0';
+        give(c->line, NULL, 0, &again);
+        if (again.status != usual.status)
+            snprintf(kept[at].why, sizeof kept[at].why, "given again it does not work");
+        else if (!outcome_same(&again, &usual))
+            snprintf(kept[at].why, sizeof kept[at].why,
+                     "given again it leaves other files (%d, usually %d)", again.nfile,
+                     usual.nfile);
     }
-    return true;
+    return kept[at].why[0] ? kept[at].why : NULL;
 }
 
 static const char *judge(const struct command *c, const struct fault *f,
                          const struct outcome *before)
 {
-    static char why[512];
     if (now.status == 124) return "it does not end";
     if (now.status >= 128) return "a signal has ended it";
     if (strstr(now.err, "internal error")) return "an internal error";
@@ -303,7 +225,7 @@ static const char *judge(const struct command *c, const struct fault *f,
     if (files) return files;
     if (now.status == usual.status) {
         if (strcmp(now.out, usual.out) != 0) return "status 0, but another output";
-        if (!same(&now, &usual) && !(now.err[0] && strcmp(c->name, "report") == 0))
+        if (!outcome_same(&now, &usual) && !(now.err[0] && strcmp(c->name, "report") == 0))
             return "status 0, but other files";
         return NULL;
     }
@@ -312,17 +234,10 @@ static const char *judge(const struct command *c, const struct fault *f,
     const bool run_failed = now.status == 1 && strcmp(c->name, "campaign") == 0;
     if (!is_one_of(now.status, f->statuses) && !run_failed) return "its status says something else";
     if (!strstr(now.err, "mimdsim: ")) return "no message";
-    give(c->line, NULL, 0, &again);
-    if (again.status != usual.status) return "given again it does not work";
-    if (!same(&again, &usual)) {
-        snprintf(why, sizeof why, "given again it leaves other files (%d, usually %d)", again.nfile,
-                 usual.nfile);
-        return why;
-    }
-    return NULL;
+    return judge_again(c);
 }
 
-/* --- all of them ------------------------------------------------------------------------------ */
+/* --- a failure ------------------------------------------------------------------------------- */
 
 static void prepare(void)
 {
@@ -367,45 +282,188 @@ static long count_calls(const struct command *c, const struct fault *f)
     return n;
 }
 
-/* One kind of failure at every call of one command. */
+/* One kind of failure in one command. */
+struct trial {
+    const struct command *command;
+    const struct fault *fault;
+    const struct outcome *before;
+    long calls, made, survived, wrong;
+};
+
+/* Judges `now`, in which call `at` has failed. */
+static void count_one(struct trial *t, long at)
+{
+    const bool well = now.status == usual.status;
+    const int status = now.status;
+    const char *why = judge(t->command, t->fault, t->before);
+    t->made++;
+    t->survived += !why && well;
+    if (all.each)
+        printf("%s %s %s %ld: %d, %s\n", t->command->name, t->fault->kind, t->fault->as, at, status,
+               why ? why : "right");
+    if (why && t->wrong++ < 10)
+        printf("%s, %s %ld of %ld, %s: status %d: %s\n    %.600s\n", t->command->name,
+               t->fault->kind, at, t->calls, t->fault->as, status, why, now.err);
+}
+
+/* In a process of its own. */
+static void try_one(struct trial *t, long at)
+{
+    prepare();
+    give(t->command->line, t->fault, at, &now);
+    count_one(t, at);
+    leave();
+}
+
+/* --- in branches ------------------------------------------------------------------------------ */
+
+static int remove_entry(const char *path, const struct stat *s, int kind, struct FTW *w)
+{
+    (void)s, (void)kind, (void)w;
+    return remove(path);
+}
+
+/* What a branch has changed is of no more use. */
+static void forget_copy(long at)
+{
+    static const char *const layers[] = {"upper", "work"};
+    for (int i = 0; i < 2; i++) {
+        char path[128];
+        snprintf(path, sizeof path, "%s.%s-%ld", all.folder, layers[i], at);
+        nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+    }
+}
+
+/* From one mount namespace to the working directory as another one has it. */
+static void step_into(int space)
+{
+    char work[96];
+    snprintf(work, sizeof work, "%s/work", all.folder);
+    if (setns(space, CLONE_NEWNS) != 0 || chdir(work) != 0) die(work);
+}
+
+static int space_of(int process)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d/ns/mnt", process);
+    const int space = open(path, O_RDONLY | O_CLOEXEC);
+    if (space < 0) die(path);
+    return space;
+}
+
+/* The next word; false when nobody is left to say one. A branch that waits for ever is ended, which
+ * its parent tells then. */
+static bool hear(int socket, struct branch_word *w, int child, bool *late)
+{
+    struct pollfd ready = {socket, POLLIN, 0};
+    while (poll(&ready, 1, PATIENCE_S * 1000) == 0) {
+        if (child == 0 || *late) return false;
+        *late = kill(child, SIGKILL) == 0;
+    }
+    return recv(socket, w, sizeof *w, 0) == sizeof *w;
+}
+
+/* Starts the command that forks at call `first` and each `step` calls later; its end of `pair`. */
+static pid_t start_branches(const struct trial *t, long first, long step, int pair[2])
+{
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET, 0, pair) != 0) die("socketpair");
+    fcntl(pair[0], F_SETFD, FD_CLOEXEC);
+    const pid_t process = fork();
+    if (process == 0) {
+        char number[32];
+        snprintf(number, sizeof number, "%d", pair[1]);
+        setenv("FAULT_SOCKET", number, 1);
+        snprintf(number, sizeof number, "%ld", step);
+        setenv("FAULT_STEP", number, 1);
+        setenv("FAULT_FOLDER", all.folder, 1);
+        if (all.thin) setenv("FAULT_THIN", "1", 1);
+        become(t->command->line, t->fault, first);
+    }
+    close(pair[1]);
+    return process;
+}
+
+/* Every `step`-th call in a branch of one process; those that it had to pass by are put into
+ * `passed`, of as many as there are calls. Returns how many. */
+static long try_branches(struct trial *t, long first, long step, long *passed)
+{
+    long npassed = 0, heard = 0;
+    int pair[2], status = 0, space = -1, home = space_of(getpid()), child = 0;
+    bool late = false;
+    prepare();
+    const pid_t process = start_branches(t, first, step, pair);
+    for (struct branch_word w; hear(pair[0], &w, child, &late); heard += w.what != BRANCH_BORN) {
+        if (w.what == BRANCH_BORN) space = space_of(child = w.child);
+        else if (w.what == BRANCH_PASSED || child != w.child) passed[npassed++] = w.at;
+        else {
+            step_into(space);
+            read_outcome(&now, late ? 124 : shell_status(w.status));
+            count_one(t, w.at);
+            step_into(home);
+            close(space);
+            forget_copy(w.at);
+            late = false;
+        }
+        if (w.what != BRANCH_PASSED && send(pair[0], "", 1, MSG_NOSIGNAL) != 1) break;
+    }
+    close(pair[0]);
+    kill(process, SIGKILL); /* it has ended, or it never will */
+    waitpid(process, &status, 0);
+    const long expected = all.thin ? heard : (t->calls - first) / step + 1;
+    if (shell_status(status) != usual.status || heard != expected) {
+        printf("%s: of %ld branches the process told %ld and ended with status %d\n",
+               t->command->name, expected, heard, shell_status(status));
+        t->wrong++;
+    }
+    close(home);
+    leave();
+    return npassed;
+}
+
+/* --- all of them ------------------------------------------------------------------------------ */
+
+/* The calls that are to fail, each in its way. */
+static void try_calls(struct trial *t)
+{
+    const long n = t->calls,
+               step = all.most > 0 && n / all.most >= all.step ? n / all.most + 1 : all.step,
+               first = all.first > 0 ? all.first
+                       : n > 0       ? 1 + step / 2 % n
+                                     : 1;
+    if (!all.branches || strcmp(t->fault->kind, "malloc") != 0) {
+        for (long at = first; at <= n; at += step) try_one(t, at);
+        return;
+    }
+    long *passed = malloc((size_t)n * sizeof *passed + 1);
+    if (!passed) die("calls");
+    const long npassed = try_branches(t, first, step, passed);
+    if (npassed > 0) printf("%s: %ld not in branches\n", t->command->name, npassed);
+    for (long i = 0; i < npassed; i++) try_one(t, passed[i]);
+    free(passed);
+}
+
 static void try_all(const struct command *c, const struct fault *f, const struct outcome *before)
 {
     /* No program can be started whose reads end in signals before it is ready for them. */
     setenv("MIMDSIM_GNUPLOT", strcmp(f->kind, "read") == 0 ? "/nowhere/gnuplot" : all.gnuplot, 1);
-    const long n = count_calls(c, f);
-    long made = 0, survived = 0, wrong = 0;
+    struct trial t = {c, f, before, count_calls(c, f), 0, 0, 0};
     if (usual.status == 99) {
         printf("%-9s %-8s %-7s skipped: this system has no filters of system calls\n", c->name,
                f->kind, f->as);
         return;
     }
-    if (n < 0 || (usual.status != 0 && usual.status != 69)) {
+    if (t.calls < 0 || (usual.status != 0 && usual.status != 69)) {
         printf("%-9s %-8s %-7s cannot be counted (status %d): %s\n", c->name, f->kind, f->as,
                usual.status, usual.err);
         all.wrong++;
         return;
     }
-    const long step = all.most > 0 && n / all.most >= all.step ? n / all.most + 1 : all.step;
-    for (long at = n > 0 ? 1 + step / 2 % n : 1; at <= n; at += step) {
-        prepare();
-        give(c->line, f, at, &now);
-        made++;
-        const bool well = now.status == usual.status;
-        const int status = now.status;
-        const char *why = judge(c, f, before);
-        if (why && wrong++ < 10) {
-            printf("%s, %s %ld of %ld, %s: status %d: %s\n", c->name, f->kind, at, n, f->as, status,
-                   why);
-            printf("    %s%.600s\n", now.out[0] && now.status ? "" : "", now.err);
-        }
-        survived += !why && well;
-        leave();
-    }
+    try_calls(&t);
+    const long told = t.made - t.survived - t.wrong;
     printf("%-9s %-8s %-7s %6ld calls, %6ld failed: %6ld survived, %6ld told, %ld wrong\n", c->name,
-           f->kind, f->as, n, made, survived, made - survived - wrong, wrong);
+           f->kind, f->as, t.calls, t.made, t.survived, told, t.wrong);
     fflush(stdout);
-    all.made += made, all.survived += survived, all.told += made - survived - wrong,
-        all.wrong += wrong;
+    all.made += t.made, all.survived += t.survived, all.told += told, all.wrong += t.wrong;
 }
 
 static bool wanted(int argc, char **argv, const char *name)
@@ -418,13 +476,19 @@ static bool wanted(int argc, char **argv, const char *name)
 int main(int argc, char **argv)
 {
     if (argc < 4)
-        return fprintf(stderr, "usage: every PROGRAM LIBRARY DATA [--most N] [--step N] [--kind "
-                               "KIND] [COMMAND...]\n"),
+        return fprintf(stderr, "usage: every PROGRAM LIBRARY DATA [--branches|--thin] [--each] "
+                               "[--most N] [--step N] [--kind KIND] [COMMAND...]\n"),
                2;
     all.program = argv[1], all.library = argv[2], all.data = argv[3];
     int i = 4;
+    for (; i < argc; i++)
+        if (strcmp(argv[i], "--branches") == 0) all.branches = true;
+        else if (strcmp(argv[i], "--thin") == 0) all.branches = all.thin = true;
+        else if (strcmp(argv[i], "--each") == 0) all.each = true;
+        else break;
     for (; i + 1 < argc && strncmp(argv[i], "--", 2) == 0; i += 2) {
         if (strcmp(argv[i], "--step") == 0) all.step = atol(argv[i + 1]);
+        if (strcmp(argv[i], "--first") == 0) all.first = atol(argv[i + 1]);
         if (strcmp(argv[i], "--most") == 0) all.most = atol(argv[i + 1]);
         if (strcmp(argv[i], "--kind") == 0) all.kind = argv[i + 1];
     }
@@ -445,7 +509,7 @@ int main(int argc, char **argv)
         static struct outcome before;
         make_before(&commands[c]);
         if (chdir("before") != 0) die("before");
-        look(&before);
+        outcome_look(&before);
         leave();
         for (int f = 0; f < FAULTS; f++)
             if (!all.kind || strcmp(all.kind, faults[f].kind) == 0)

@@ -5,6 +5,7 @@
  *     FAULT_ON=1                          all later ones, too
  *     FAULT_COUNT=FILE                    how many there were, at the end of a process that ends by
  * itself
+ *     FAULT_SOCKET=5 ...                  each in a process of its own, forked there (branch.h)
  *
  * Only in processes called $FAULT_PROGRAM: what these start in turn goes on as usual, but for
  * reads, which a program makes before it has loaded this library. Allocations, opening, names,
@@ -34,6 +35,8 @@
 #include <ucontext.h>
 #include <unistd.h>
 
+#include "branch.h"
+
 enum kind { NOTHING, MALLOC, WRITE, READ, SYNC, NAME, OPEN, PROCESS, PIPE, MAP, LOCK };
 static const char *const words[] = {"",     "malloc",  "write", "read", "sync", "name",
                                     "open", "process", "pipe",  "map",  "lock"};
@@ -48,15 +51,19 @@ static struct {
     const char *report;
 } fault;
 
-/* Whether this call of `kind` is to fail; errno is set. */
-static int fails(enum kind kind)
+/* Whether this call of `kind`, made by `caller`, is to fail; errno is set. */
+static int fails_for(enum kind kind, const void *caller)
 {
     if (kind != fault.kind) return 0;
     long now = atomic_fetch_add(&fault.count, 1) + 1;
-    if (now != fault.at && !(fault.on && fault.at > 0 && now > fault.at)) return 0;
+    if (branch_is_on() ? !branch_fails(now, fault.at, caller)
+                       : now != fault.at && !(fault.on && fault.at > 0 && now > fault.at))
+        return 0;
     errno = fault.error;
     return 1;
 }
+
+#define fails(kind) fails_for(kind, __builtin_return_address(0))
 
 /* --- functions -------------------------------------------------------------------------------- */
 
@@ -246,13 +253,14 @@ __attribute__((constructor)) static void begin(void)
         if (strcmp(as, errors[i].name) == 0) fault.error = errors[i].error;
     for (int i = 1; i < (int)(sizeof words / sizeof *words); i++)
         if (strcmp(kind, words[i]) == 0) fault.kind = (enum kind)i;
+    branch_begin();
     if (fault.kind == WRITE) catch_calls(writes, 3);
     if (fault.kind == READ) catch_calls(reads, 3);
 }
 
 __attribute__((destructor)) static void end(void)
 {
-    if (!fault.report) return;
+    if (!fault.report || branch_is_on()) return;
     fault.at = fault.on = 0;
     const long count = fault.count;
     FILE *out = fopen(fault.report, "w");

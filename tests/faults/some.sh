@@ -1,5 +1,6 @@
 #!/bin/sh
-# some.sh - a few failures of each kind in each command (every.c); all of them are `make faults`.
+# some.sh - a few failures of each kind in each command (every.c); all of them are `make faults`. Allocations that fail in
+# branches of one process (branch.h) are judged like those that fail in processes of their own.
 # shellcheck disable=SC2154
 build=$(pwd)
 data=$(cd "${srcdir:-.}" && pwd)
@@ -7,4 +8,11 @@ data=$(cd "${srcdir:-.}" && pwd)
 # what the program is built with
 mimdsim=${MIMDSIM:-$build/mimdsim}
 "$mimdsim" --version | grep -q sanitizers && exit 77
-exec tests/faults/every "$mimdsim" "$build/tests/faults/fail.so" "$data" --most "${MOST:-5}"
+every() { tests/faults/every "$mimdsim" "$build/tests/faults/fail.so" "$data" "$@"; }
+alone=$(every --each --kind malloc --most 8 plot) && beside=$(every --branches --each --kind malloc --most 8 plot) || exit 1
+if [ "$alone" != "$beside" ]; then
+    printf '%s\nin branches:\n%s\n' "$alone" "$beside"
+    # without the right to mount there are none
+    case $beside in *'not in branches'*) ;; *) exit 1 ;; esac
+fi
+every --most "${MOST:-5}"

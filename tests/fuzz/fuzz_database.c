@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "../support/made_run.h"
+#include "app/load_curve.h"
 #include "base/text.h"
 #include "plan/plan.h"
 #include "report/claims.h"
@@ -179,6 +180,20 @@ static void audit(struct store *s, struct err *e)
     arena_destroy(a);
 }
 
+/* As `mimdsim load --traffic FILE:RUN`, up to the first message. */
+static void read_traffic(const char *path, struct err *e)
+{
+    char word[300];
+    snprintf(word, sizeof word, "%s:%d", path, RUNS);
+    struct arena *a = arena_create();
+    const struct run_spec spec = made_spec(a, "t3e-300", 4, 4, 0);
+    struct load_question q = {.machine = &spec.machine};
+    struct load_recording x;
+    struct load_series s;
+    judge(load_recording_read(word, &x, a, e) && load_begin(&q, &x, &s, a, e), e);
+    arena_destroy(a);
+}
+
 static void merge(const char *path, struct err *e)
 {
     struct store_merged done;
@@ -188,8 +203,8 @@ static void merge(const char *path, struct err *e)
     store_close(s);
 }
 
-/* All that is read of a database, in parts of about the same work; the last, merging, opens it by
- * itself. */
+/* All that is read of a database, in parts of about the same work; the last two open it by
+ * themselves. */
 enum {
     PART_RELATIONS,
     PART_CLAIMS = PART_RELATIONS + SLICES,
@@ -197,6 +212,7 @@ enum {
     PART_TIMELINES = PART_FIGURES + SLICES,
     PART_AUDIT,
     PART_REPORT,
+    PART_TRAFFIC,
     PART_MERGE,
     PARTS
 };
@@ -209,6 +225,7 @@ static void read_part(struct store *s, const char *path, size_t part, struct err
     else if (part == PART_TIMELINES) read_timelines(s, e);
     else if (part == PART_AUDIT) audit(s, e);
     else if (part == PART_REPORT) read_report(s, e);
+    else if (part == PART_TRAFFIC) read_traffic(path, e);
     else merge(path, e);
 }
 
