@@ -197,6 +197,7 @@ int cmd_calibrate(int argc, char **argv)
     struct job job = {.kept = -1};
     struct err e;
     struct text text = {0};
+    struct beside file = {0};
     err_clear(&e);
     const bool quick = take_flag(&argc, argv, "--quick");
     bool ok = job_open_started(&job, &e);
@@ -207,7 +208,10 @@ int cmd_calibrate(int argc, char **argv)
     struct calibration *out = TAKE(a, 1, struct calibration);
     const char *path = c.database_given ? c.database : "my-host.yaml";
     job.started = true;
-    ok = ok && measure(&job, &c, quick, out, &e);
+    /* A file that cannot be made is told before the minutes of measuring. */
+    ok = ok &&
+         (job.h.rank > 0 || (beside_begin(&file, path, &e) && beside_end(&file, false, &e))) &&
+         measure(&job, &c, quick, out, &e);
     if (ok && job.h.rank == 0) {
         calibration_text(out, &text);
         ok = beside_write(path, text.s, text.length, &e);

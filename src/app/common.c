@@ -190,7 +190,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case ARGP_KEY_ARG:
         if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
-            return refuse(state, "unexpected argument '%s'", arg);
+            return refuse(state, c->narg > 1 ? "argument '%s': more than can be given"
+                                             : "unexpected argument '%s'", arg);
         c->arg[c->narg++] = arg;
         break;
     case ARGP_KEY_END: /* all words have been seen */

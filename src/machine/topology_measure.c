@@ -9,9 +9,10 @@
 
 #include "machine/topology_internal.h"
 
-/* Routers up to which all distances are measured, and from how many above that; pairs of routers
- * whose routes are walked. */
-enum { ALL_SOURCES = 4096, SAMPLED_SOURCES = 64, ROUTE_PAIRS = 1 << 22 };
+/* Routers up to which all distances are measured, and from how many at most above that; of very
+ * large networks fewer, so that together no more routers are found than MOST_FOUND, and routes to a
+ * part of the others, of at most MOST_STEPS links: a second or two each. */
+enum { ALL_SOURCES = 4096, SAMPLED_SOURCES = 64, MOST_FOUND = 1 << 25, MOST_STEPS = 1 << 29 };
 
 struct survey {
     const struct topology *t;
@@ -19,6 +20,7 @@ struct survey {
     int *distance, *queue;
     double *ways; /* shortest ways from the source */
     int *nodes;   /* (nrouter) */
+    double routes, route_pairs; /* links of the routes that were walked, and of how many pairs */
 };
 
 static struct survey survey_make(const struct topology *t, struct arena *a)
@@ -57,49 +59,52 @@ static void search(const struct survey *s, int source)
     }
 }
 
-/* The routes from one node of a router to one of every other: all nodes of a router have as long
- * ones. */
-static double walk_routes(const struct survey *s, int source, struct topology_measure *m)
+/* The routes from one node of a router to one of every `each`-th other: all nodes of a router have
+ * as long ones. */
+static void walk_routes(struct survey *s, int source, int each, struct topology_measure *m)
 {
     const struct topology *t = s->t;
-    double sum = 0;
+    const double nodes = s->nodes[source];
     int node = source * t->nodes_per_router;
-    for (int i = 0; i < t->nnode; i += t->nodes_per_router) {
-        int pairs = s->nodes[topology_router_of(t, i)];
+    for (int64_t i = 0; i < t->nnode; i += (int64_t)t->nodes_per_router * each) {
+        int pairs = s->nodes[topology_router_of(t, (int)i)];
+        s->route_pairs += nodes * (pairs - (i == node));
         if (i == node || pairs == 0) continue;
-        int n = topology_distance(t, node, i);
-        sum += (double)n * pairs;
+        int n = topology_distance(t, node, (int)i);
+        s->routes += nodes * n * pairs;
         if (n > m->longest_route) m->longest_route = n;
     }
-    return sum;
 }
 
 /* Sums over pairs of different nodes: those of one router are no link apart. */
-static void measure_distances(const struct survey *s, struct topology_measure *m)
+static void measure_distances(struct survey *s, struct topology_measure *m)
 {
     const struct topology *t = s->t;
     const int with_nodes = t->nnode / t->nodes_per_router;
-    double links = 0, routes = 0, pairs = 0, ways = 0, router_pairs = 0;
+    double links = 0, pairs = 0, ways = 0, router_pairs = 0;
     m->sampled = with_nodes > ALL_SOURCES;
     m->nsource = m->sampled ? SAMPLED_SOURCES : with_nodes;
+    while (m->sampled && m->nsource > 1 && m->nsource > MOST_FOUND / with_nodes) m->nsource /= 2;
     for (int k = 0; k < m->nsource; k++) {
         /* Routers with nodes have the lowest numbers. */
         int source = (int)((int64_t)k * with_nodes / m->nsource), nodes = s->nodes[source];
         if (nodes == 0) continue;
         search(s, source);
+        double away = 0;
         for (int r = 0; r < with_nodes; r++) {
             pairs += (double)nodes * (s->nodes[r] - (r == source));
             if (r == source || s->nodes[r] == 0) continue;
             links += (double)nodes * s->nodes[r] * s->distance[r];
+            away += s->distance[r];
             ways += s->ways[r];
             router_pairs++;
             if (s->distance[r] > m->diameter) m->diameter = s->distance[r];
             if (m->least_ways <= 0 || s->ways[r] < m->least_ways) m->least_ways = s->ways[r];
         }
-        routes += nodes * walk_routes(s, source, m);
+        walk_routes(s, source, m->sampled ? 1 + (int)(away * m->nsource / MOST_STEPS) : 1, m);
     }
     m->mean = pairs > 0 ? links / pairs : 0;
-    m->mean_route = pairs > 0 ? routes / pairs : 0;
+    m->mean_route = s->route_pairs > 0 ? s->routes / s->route_pairs : 0;
     m->mean_ways = router_pairs > 0 ? ways / router_pairs : 0;
 }
 

@@ -29,7 +29,8 @@ struct topology_measure {
 };
 
 /* topology_measure: measure `t`; memory from a. Distances are exact up to 4,096 routers, above that
- * from 64 of them. O(routers x links) and for partitioning O(routers^2) a pass. */
+ * from 64 of them or, of more than 524,288, fewer. O(routers x links) and for partitioning
+ * O(routers^2) a pass. */
 struct topology_measure topology_measure(const struct topology *t, struct arena *a);
 
 /* topology_bisection: cables between two halves of the nodes by the closed form of the family, -1

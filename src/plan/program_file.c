@@ -119,7 +119,8 @@ static bool add_program(struct collection *x, const char *name, bool typed, int 
     if (s->nprogram == SCENARIO_MAX_PROGRAMS)
         return err_set_at(x->err, ERR_DATA, file, line, "more than %d programs",
                           SCENARIO_MAX_PROGRAMS);
-    /* In this order: does it exist, may it be used, can this verb use it, does it open. */
+    /* In this order: does it exist, may it be used, can this verb use it, is it a file, does it
+     * open. */
     if (access(path, F_OK) != 0)
         return err_set_at(x->err, ERR_NO_INPUT, file, line,
                           "program '%.120s': there is no such file", path);
@@ -127,6 +128,10 @@ static bool add_program(struct collection *x, const char *name, bool typed, int 
         return refuse_outside(x, name, line);
     if (x->options->program == NULL)
         return err_set_at(x->err, ERR_USAGE, file, line, "this verb takes no programs of your own");
+    /* A compiler would wait for what a pipe has to say, for ever. */
+    FILE *in = text_open_file(path, x->err);
+    if (in == NULL) return false;
+    fclose(in);
     const struct program_sheet *sheet =
         x->options->program(x->options->program_context, path, x->arena, x->err);
     if (sheet == NULL) return false;

@@ -268,6 +268,10 @@ static bool refuse_rows(const struct store *s, const char *found, struct err *e)
     if (number == SQLITE_NOMEM)
         return err_set(e, ERR_INTERNAL, "no memory for database %s", s->path);
     if (number == SQLITE_IOERR) return err_set(e, ERR_IO, "reading database %s failed", s->path);
+    /* of the pages behind a long row it tells no number: a page beyond the end has other words */
+    if (strstr(found, "failed to get page") != NULL)
+        return err_set(e, ERR_INTERNAL, "no memory for database %s, or its disk fails: %s", s->path,
+                       found);
     return err_set(e, ERR_DATA, "database %s is damaged: %s", s->path, found);
 }
 

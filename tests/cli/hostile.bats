@@ -41,7 +41,15 @@ soon() {
             done
         done
     done
-    rm ./*.yaml ./*.json
+    # a compiler would wait for its text
+    mkfifo pipe.c
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'ranks: 2' 'program: pipe.c' >program.yaml
+    for verb in check run explain; do
+        run --separate-stderr -- soon "$MIMDSIM" $verb program.yaml
+        [ "$status" -eq 65 ] || { echo "$verb program.yaml"; show; return 1; }
+        stderr_says "pipe.c: a pipe, not a file"
+    done
+    rm ./*.yaml ./*.json pipe.c
     rmdir folder
     nothing_left_behind
 }

@@ -36,6 +36,15 @@ calibrated() {
     stdout_says measured
 }
 
+@test "a machine file that cannot be made is told before anything is measured" {
+    SECONDS=0
+    fails_with 73 mimdsim calibrate -o nowhere/my.yaml
+    stderr_says "cannot make nowhere/my.yaml"
+    [ "$SECONDS" -lt 10 ]
+    ls >left
+    [ "$(cat left)" = left ]
+}
+
 @test "calibrate on one process measures rates alone, with Open MPI" {
     needs openmpi
     calibrated openmpi 1

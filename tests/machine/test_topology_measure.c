@@ -256,6 +256,20 @@ static void large_networks_are_sampled(void **state)
     arena_destroy(a);
 }
 
+/* Every route of a ring of 2^18 routers has 2^16 links in the mean: walking all of them from 64
+ * routers would take half an hour. */
+static void long_routes_are_walked_to_a_part(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct topology_spec s = topology_spec_of(TOPOLOGY_TORUS, 1, (int[]){1 << 18});
+    struct topology_measure m = measured(&s, a);
+    assert_true(m.sampled && m.nsource == 64);
+    assert_int_equal(m.longest_route, 1 << 17);
+    assert_true(m.mean_route > 0.99 * m.mean && m.mean_route < 1.01 * m.mean);
+    arena_destroy(a);
+}
+
 static void one_router_has_nothing_to_cut(void **state)
 {
     (void)state;
@@ -285,6 +299,7 @@ int main(void)
         cmocka_unit_test(shortest_ways_are_counted),
         cmocka_unit_test(routes_may_be_longer_than_distances),
         cmocka_unit_test(large_networks_are_sampled),
+        cmocka_unit_test(long_routes_are_walked_to_a_part),
         cmocka_unit_test(one_router_has_nothing_to_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
