@@ -93,6 +93,14 @@ WEAK void comm_barrier_at(struct comm *c, const char *file, int line)
     CALLS->collective(c, &k, file, line);
 }
 
+WEAK int comm_search_at(struct comm *c, enum comm_search_state state, const char *file, int line)
+{
+    int answer = 0;
+    const struct mimdsim_collective k = {.kind = MIMDSIM_SEARCH, .op = state, .recv = &answer};
+    CALLS->collective(c, &k, file, line);
+    return answer;
+}
+
 WEAK void comm_broadcast_at(struct comm *c, int root, void *data, int64_t bytes, const char *file,
                             int line)
 {

@@ -206,6 +206,25 @@ enum comm_op {
 #define comm_alltoallv(c, send, send_bytes, recv, recv_bytes)                                      \
     comm_alltoallv_at((c), (send), (send_bytes), (recv), (recv_bytes), __FILE__, __LINE__)
 
+/* What a rank says at the end of a step of a search. */
+enum comm_search_state {
+    COMM_SEARCH_GOES_ON,   /* nothing found yet, more to look at */
+    COMM_SEARCH_FOUND,     /* this rank has found what all look for */
+    COMM_SEARCH_EXHAUSTED, /* nothing left to look at */
+    COMM_SEARCH_BEGIN
+};
+
+/* comm_search_begin: all ranks begin to search, each for itself. comm_search: this rank is at the
+ * end of a step; 0: go on; 2: found, by this rank and perhaps by others; 1: found by others alone;
+ * -1: nobody has found anything and nobody has anything left. Every rank calls until it gets
+ * something else than 0. For programs that declare .wildcards = 1.
+ *
+ * On a machine with an eureka (docs/collectives.md) the first rank that finds something interrupts
+ * all others: a step that was not over then takes time until the signal only, and what it found
+ * does not count. On all other machines the ranks ask each other after each step. */
+#define comm_search_begin(c) ((void)comm_search((c), COMM_SEARCH_BEGIN))
+#define comm_search(c, state) comm_search_at((c), (state), __FILE__, __LINE__)
+
 /* comm_algorithm: from now on this rank's collectives called `collective` ("allreduce",
  * "broadcast", ...) run by the algorithm `name` of docs/collectives.md; "auto": as the machine
  * states. The same on every rank. */
@@ -291,6 +310,7 @@ void comm_alltoall_at(struct comm *c, const void *send, int64_t bytes, void *rec
                       int line);
 void comm_alltoallv_at(struct comm *c, const void *send, const int64_t *send_bytes, void *recv,
                        const int64_t *recv_bytes, const char *file, int line);
+int comm_search_at(struct comm *c, enum comm_search_state state, const char *file, int line);
 void comm_algorithm_at(struct comm *c, const char *collective, const char *name, const char *file,
                        int line);
 void comm_stage_at(struct comm *c, int stage, const char *file, int line);

@@ -141,14 +141,15 @@ enum mimdsim_collective_kind {
     MIMDSIM_SCATTER,
     MIMDSIM_ALLGATHER,
     MIMDSIM_ALLTOALL,
-    MIMDSIM_SCAN
+    MIMDSIM_SCAN,
+    MIMDSIM_SEARCH
 };
 
 /* One collective call; parts that a kind does not use are zero. */
 struct mimdsim_collective {
     int kind; /* enum mimdsim_collective_kind */
     int root;
-    int op;        /* enum comm_op of program.h */
+    int op;        /* enum comm_op of program.h; of a search enum comm_search_state */
     int exclusive; /* scan: without the own element */
     const void *send;
     void *recv;

@@ -41,6 +41,15 @@ struct comm_hardware {
     unsigned kinds; /* bits 1 << enum collective_kind (collectives.h) */
     enum comm_operation operations; /* the most that it can combine */
     int64_t largest;                /* vector [B] */
+    int eureka;                     /* a signal of one rank interrupts all (comm_search) */
+};
+
+/* What a rank says in a search of all ranks (comm_search). */
+enum comm_search_state {
+    COMM_SEARCH_GOES_ON,   /* nothing found yet, more to look at */
+    COMM_SEARCH_FOUND,     /* this rank has found what all look for */
+    COMM_SEARCH_EXHAUSTED, /* nothing left to look at */
+    COMM_SEARCH_BEGIN      /* before the first step; every rank */
 };
 
 /* One rank's part in a collective of the network (comm_meet). Kind, root and bytes are the same on
@@ -70,6 +79,8 @@ struct comm_type {
     void (*barrier)(struct comm *c);
     /* comm_meet; NULL: there is no such network, whatever the machine's file says */
     void (*meet)(struct comm *c, const struct comm_meeting *m);
+    /* comm_search on a network with an eureka; NULL as meet */
+    int (*search)(struct comm *c, int state);
     void (*work)(struct comm *c, const struct work *w);
     void (*stage)(struct comm *c, int stage);
     int64_t (*now_ps)(struct comm *c);

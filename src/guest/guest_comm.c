@@ -209,6 +209,7 @@ COMBINE(least_int64, int64_t, with[i] < into[i] ? with[i] : into[i])
 COMBINE(most_int64, int64_t, with[i] > into[i] ? with[i] : into[i])
 
 /* In the order of enum comm_op. */
+enum { MOST_INT64 = 7 };
 static const struct collective_op ops[] = {
     {.combine = sum, .commutative = true, .operation = COMM_REAL},
     {.combine = product, .commutative = true},
@@ -217,7 +218,10 @@ static const struct collective_op ops[] = {
     {.combine = sum_int64, .commutative = true, .operation = COMM_INTEGER},
     {.combine = product_int64, .commutative = true},
     {.combine = least_int64, .commutative = true, .idempotent = true, .operation = COMM_INTEGER},
-    {.combine = most_int64, .commutative = true, .idempotent = true, .operation = COMM_INTEGER},
+    [MOST_INT64] = {.combine = most_int64,
+                    .commutative = true,
+                    .idempotent = true,
+                    .operation = COMM_INTEGER},
 };
 
 /* The program's numbers are part of its binary interface, the simulator's are not. */
@@ -283,9 +287,37 @@ static struct collective_call make_call(struct comm *c, const struct mimdsim_col
 }
 
 static void call_collective(struct comm *handle, const struct mimdsim_collective *k,
+                            const char *file, int line);
+
+/* One step of a search: by the machine's eureka, else all ranks ask each other whether one has
+ * found, and whether one has more to look at. Who has nothing left goes on asking. */
+static int search(struct comm *handle, int state, const char *file, int line)
+{
+    struct comm *c = at(handle, file, line);
+    if (state < COMM_SEARCH_GOES_ON || state > COMM_SEARCH_BEGIN)
+        stop(c, "says %d in a search, which is no enum comm_search_state", state);
+    if (c->hardware != NULL && c->hardware->eureka && c->type->search != NULL)
+        return c->type->search(c, state);
+    if (state == COMM_SEARCH_BEGIN) return 0;
+    int64_t any[2];
+    const struct mimdsim_collective k = {
+        .kind = MIMDSIM_ALLREDUCE, .op = MOST_INT64, .send = any, .recv = any, .n = 2};
+    do {
+        any[0] = state == COMM_SEARCH_FOUND;
+        any[1] = state == COMM_SEARCH_GOES_ON;
+        call_collective(handle, &k, file, line);
+    } while (state == COMM_SEARCH_EXHAUSTED && any[0] == 0 && any[1] != 0);
+    return any[0] != 0 ? 1 + (state == COMM_SEARCH_FOUND) : any[1] != 0 ? 0 : -1;
+}
+
+static void call_collective(struct comm *handle, const struct mimdsim_collective *k,
                             const char *file, int line)
 {
     struct guest_rank *g = rank_of(handle);
+    if (k->kind == MIMDSIM_SEARCH) {
+        *(int *)k->recv = search(handle, k->op, file, line);
+        return;
+    }
     struct comm *c = at(handle, file, line);
     struct collective_call call = make_call(c, k);
     const struct collective_algorithm *by = g->algorithm[call.kind];

@@ -12,6 +12,10 @@ static const enum collective_kind possible[] = {COLLECTIVE_BROADCAST, COLLECTIVE
                                                 COLLECTIVE_ALLREDUCE};
 enum { POSSIBLE = sizeof possible / sizeof *possible, WORD = 32 };
 
+/* One signal for all ranks, which is no collective: a bit behind those of the kinds. */
+static const char eureka[] = "eureka";
+static const unsigned eureka_bit = 1u << COLLECTIVE_KINDS;
+
 /* Brackets as well: a YAML list is one text here. */
 #define SEPARATORS "[], ;\t\n"
 
@@ -25,8 +29,9 @@ static bool read_kinds(const char *text, unsigned *kinds, char word[WORD])
         /* Longer words are cut, and then match nothing. */
         snprintf(word, WORD, "%.*s", (int)(length < WORD ? length : WORD - 1), s);
         while (k < POSSIBLE && strcmp(word, collective_name(possible[k])) != 0) k++;
-        if (k == POSSIBLE) return false;
-        *kinds |= 1u << possible[k];
+        const bool signal = strcmp(word, eureka) == 0;
+        if (k == POSSIBLE && !signal) return false;
+        *kinds |= signal ? eureka_bit : 1u << possible[k];
         s += length;
     }
     return true;
@@ -38,18 +43,18 @@ bool collective_kinds_valid(const char *text, char *why, int size)
 {
     unsigned kinds;
     char word[WORD];
-    const char *name[POSSIBLE];
+    const char *name[POSSIBLE + 1] = {eureka};
     if (read_kinds(text, &kinds, word)) return true;
-    for (int i = 0; i < POSSIBLE; i++) name[i] = collective_name(possible[i]);
+    for (int i = 0; i < POSSIBLE; i++) name[1 + i] = collective_name(possible[i]);
     /* The nearest of those that there are, as for every misspelt name. */
-    const char *near = text_nearest(word, name, POSSIBLE);
+    const char *near = text_nearest(word, name, POSSIBLE + 1);
     /* The one that is looked for most often under this key has another. */
     if (strcmp(word, "barrier") == 0)
         snprintf(why, (size_t)size,
                  "barriers are not listed here; expected 'software.barrier.kind: hardware'");
     else
         snprintf(why, (size_t)size, "'%s' is no collective of networks; expected %s%s%s", word,
-                 near ? "'" : "", near ? near : "some of broadcast, reduce, allreduce",
+                 near ? "'" : "", near ? near : "some of broadcast, reduce, allreduce, eureka",
                  near ? "'" : "");
     return false;
 }
@@ -67,6 +72,8 @@ struct comm_hardware collective_hardware(const struct machine_spec *m)
     char word[WORD];
     /* Checked when the file was read: nothing can be wrong here. */
     read_kinds(c->kinds, &h.kinds, word);
+    h.eureka = (h.kinds & eureka_bit) != 0;
+    h.kinds &= ~eureka_bit;
     if (m->software.barrier == BARRIER_HARDWARE) h.kinds |= 1u << COLLECTIVE_BARRIER;
     return h;
 }

@@ -56,6 +56,9 @@ static int describe(const struct vp *v, char *s, int size)
                         v->world->barrier_count, v->world->nrank);
     case WAITING_MEETING:
         return meeting_describe(v, s, size);
+    case WAITING_POLL: /* longer than a look: for the end of a search */
+        return snprintf(s, size, "rank %d in %s waits for the end of a search (%s:%d)",
+                        v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line);
     case WAITING_ANY: /* for a receive that nothing has come for, if there is one */
         r = v->posted;
         if (r) describe_receive(r, receive, sizeof receive);

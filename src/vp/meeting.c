@@ -79,7 +79,7 @@ sim_ps meeting_time(const struct network_spec *n, int links, int64_t bytes)
 void meeting_create(struct world *w)
 {
     const struct comm_hardware h = collective_hardware(w->machine);
-    if (h.kinds == 0) return;
+    if (h.kinds == 0 && !h.eureka) return;
     struct meeting *m = TAKE(w->scratch, 1, struct meeting);
     m->hardware = h;
     w->meeting = m;
@@ -88,6 +88,8 @@ void meeting_create(struct world *w)
     /* One pointer a rank: the vectors themselves are where the ranks have them. */
     m->data = TAKE(w->scratch, w->nrank, void *);
     m->links = meeting_links(w->machine, w->topology, &w->placement);
+    /* A signal is a collective without data. */
+    if (h.eureka) w->search = search_create(w, meeting_time(&w->machine->network, m->links, 0));
 }
 
 const struct comm_hardware *meeting_hardware(const struct world *w)

@@ -28,8 +28,13 @@ int meeting_links(const struct machine_spec *m, const struct topology *t,
 /* meeting_time: from the last entry to the result everywhere over so many links [ps]. */
 sim_ps meeting_time(const struct network_spec *n, int links, int64_t bytes);
 
-/* vp_meet: comm_meet of a virtual processor. */
+/* vp_meet: comm_meet of a virtual processor. vp_search (search.c): comm_search, on a network with
+ * an eureka. */
 void vp_meet(struct comm *c, const struct comm_meeting *m);
+int vp_search(struct comm *c, int state);
+
+/* search_create: the state of searches whose signal takes `signal` [ps], in memory of the run. */
+struct search *search_create(struct world *w, sim_ps signal);
 
 /* meeting_describe: what `v`, which waits in one, waits for; as describe in deadlock.c. */
 int meeting_describe(const struct vp *v, char *s, int size);

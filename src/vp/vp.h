@@ -78,10 +78,10 @@ struct world {
     int nrank, nstage, nfinished;
     struct software_cost software;
     struct node_cost node_cost;
-    bool shared_channel, eager_only, noisy;
+    bool shared_channel, eager_only, noisy, broken; /* broken: a process of the job is silent */
     struct meeting *meeting; /* collectives of the network (meeting.h), NULL: it does none */
+    struct search *search;   /* its eureka (search.c), NULL: it has none */
     bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
-    bool broken; /* a process of the job does not answer */
     /* by its ranks, where processes share the run (shared.h); NULL: not kept */
     struct published *published;
     struct vp **ready; /* (nown) ring of ranks that can go on */

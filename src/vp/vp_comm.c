@@ -380,6 +380,7 @@ const struct comm_type vp_comm_type = {
     .wait = vp_wait,
     .barrier = vp_barrier,
     .meet = vp_meet,
+    .search = vp_search,
     .work = vp_work,
     .stage = vp_stage,
     .now_ps = vp_now,

@@ -60,6 +60,8 @@ right() {
 
 @test "conjugate gradients are right" { right conjugate-gradients --set n=16 --set iterations=8 --set ranks=1,2,3,16; }
 
+@test "a factor is found, by an eureka and by asking" { right find-factor --set n=9797 --set block=1,7 --set ranks=1,2,3,16; }
+
 @test "bodies in a ring are right" { right nbody-ring --set n=19 --set ranks=1,2,3,16; }
 
 @test "their speedup is drawn, a curve for each machine" {
