@@ -233,6 +233,13 @@ static void a_zero_that_is_no_small_number_has_a_word(void **state)
     const struct field *hop = field_find_full("machine.network.hop_latency", &t);
     assert_false(field_set(hop, base, "unlimited", arena, why, (int)sizeof why));
     assert_false(field_is_wordless_zero(hop, base, "0 s"));
+    /* of files and databases, for people: words, also where it stands for another setting */
+    const struct field *port = field_find_full("machine.network.injection.bandwidth", &t);
+    assert_string_equal(field_word(f, "0 B/s"), "unlimited");
+    assert_string_equal(field_word(port, "0 B/s"), "as a link");
+    assert_string_equal(field_word(port, "3 MB/s"), "3 MB/s");
+    assert_string_equal(field_word(hop, "0 s"), "0 s");
+    assert_string_equal(field_word(NULL, "0 s"), "0 s");
 }
 
 static void fields_that_hold_a_number_say_it(void **state)
