@@ -189,9 +189,11 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->json = true;
         break;
     case ARGP_KEY_ARG:
-        if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
-            return refuse(state, c->narg > 1 ? "argument '%s': more than can be given"
-                                             : "unexpected argument '%s'", arg);
+        if (c->narg >= p->most || c->narg >= COMMON_MOST_ARGUMENTS)
+            return refuse(state, c->narg < COMMON_MOST_ARGUMENTS
+                                     ? "unexpected argument '%s'"
+                                     : "argument '%s' is one too many: 64 are taken",
+                          arg);
         c->arg[c->narg++] = arg;
         break;
     case ARGP_KEY_END: /* all words have been seen */

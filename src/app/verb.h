@@ -27,7 +27,7 @@ extern const struct verb verb_list[];
 VERB_LIST(X)
 #undef X
 
-enum { COMMON_MOST_SETS = 256 };
+enum { COMMON_MOST_SETS = 256, COMMON_MOST_ARGUMENTS = 64 };
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {
@@ -48,7 +48,7 @@ struct common {
     int jobs;              /* 0: as many as processors */
     struct catalogue kernel; /* the kernels there are */
     int narg;
-    const char *arg[64]; /* what is not an option */
+    const char *arg[COMMON_MOST_ARGUMENTS]; /* what is not an option */
 };
 
 /* Which of the common options a verb takes. */

@@ -142,7 +142,8 @@ char *text_put_integer(char *at, int64_t v)
 void text_add_integer(struct text *t, int64_t v)
 {
     char digits[TEXT_INTEGER];
-    text_add_bytes(t, digits, (size_t)(text_put_integer(digits, v) - digits));
+    const char *end = text_put_integer(digits, v);
+    text_add_bytes(t, digits, (size_t)(end - digits));
 }
 
 /* An empty text may be used again. */

@@ -175,13 +175,24 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
 
 /* ---- what does not act */
 
+/* Whether a setting acts in a job that runs beside this one, which the plan may have left out. */
+static bool acts_beside(const struct run_spec *run, const struct field *f)
+{
+    const struct job_set *jobs = run->jobs;
+    for (int i = 0; jobs != NULL && i < jobs->n; i++)
+        if (!jobs->idle[i] && f->idle(jobs->job[i]) == NULL) return true;
+    return false;
+}
+
 /* Why a setting acts in no run, NULL when it acts in one. */
 static const char *why_idle(const struct plan *p, const struct setting *s)
 {
     const char *why = NULL;
     if (s->kind != SETTING_FIELD || s->field->idle == NULL) return NULL;
-    for (int i = 0; i < p->nrun; i++)
-        if ((why = s->field->idle(&p->run[i])) == NULL) return NULL;
+    for (int i = 0; i < p->nrun; i++) {
+        const struct run_spec *run = &p->run[i];
+        if ((why = s->field->idle(run)) == NULL || acts_beside(run, s->field)) return NULL;
+    }
     return why;
 }
 

@@ -39,6 +39,6 @@ void tape_rank(struct tape *t, struct comm *c, const struct rank_program *rank, 
 /* tape_end: the run is over: its outputs are kept, or those of a tape that was repeated are given
  * to it. False: it did not end well and is to be made without the tape, which alone can tell
  * why. */
-bool tape_end(struct tapes *t, struct tape *tape, struct program_run *r, struct run_result *out);
+bool tape_end(struct tapes *all, struct tape *t, struct program_run *r, struct run_result *out);
 
 #endif
