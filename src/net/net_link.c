@@ -75,8 +75,10 @@ static struct flight *flight_take(struct net *n)
     struct flight *f = g->pool;
     g->pool = f->next;
     /* For the next message: long unused ones are cold. */
-    __builtin_prefetch(g->pool);
-    __builtin_prefetch((const char *)g->pool + 64);
+    if (g->pool) {
+        __builtin_prefetch(g->pool);
+        __builtin_prefetch((const char *)g->pool + 64);
+    }
     return f;
 }
 
