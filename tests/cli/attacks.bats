@@ -196,6 +196,7 @@ draw_all() {
         add_to text "$shown"
         draw_all 0
         [ "$(find drawn -name '*.svg' | wc -l)" -eq "$pictures" ]
+        svg_alone # the first text has been drawn both ways
     done
 }
 
