@@ -40,6 +40,7 @@ static bool let_go(struct program_run *r, struct run_cache *c, const struct mach
     struct tape *tape = tape_for(c->tapes, r);
     const bool ok =
         launch_run(r, machine, record, seed, largest, tape, c->scratch, c->world, a, out, e);
+    if (ok && !tape) tape_none(c->tapes, r, out);
     if (!ok || !tape || tape_end(c->tapes, tape, r, out)) return ok;
     arena_release(a, results);
     arena_release(c->scratch, work);

@@ -92,17 +92,28 @@ static bool same(const struct task *a, const struct task *b)
            memcmp(&a->model, &b->model, sizeof a->model) == 0;
 }
 
+static struct task task_of(const struct program_run *r)
+{
+    return (struct task){r->type, r->spec.model, r->spec.kernel, r->order.keep, r->spec.nrank};
+}
+
+/* What is known of a task; NULL: nothing. */
+static struct tape *tape_of(struct tapes *t, const struct task *task)
+{
+    for (int i = 0; i < t->n; i++)
+        if (same(&t->tape[i].task, task)) return &t->tape[i];
+    return NULL;
+}
+
 struct tape *tape_for(struct tapes *t, const struct program_run *r)
 {
-    const struct task task = {r->type, r->spec.model, r->spec.kernel, r->order.keep, r->spec.nrank};
+    const struct task task = task_of(r);
     /* Processes that share a run have parts of its ranks. What a network does by itself depends on
      * the machine. */
     if (!t || !r->type->repeats || r->order.hosts || (r->order.keep & KEEP_SCENES) ||
         collective_meets(&r->spec))
         return NULL;
-    struct tape *tape = NULL;
-    for (int i = 0; i < t->n && !tape; i++)
-        if (same(&t->tape[i].task, &task)) tape = &t->tape[i];
+    struct tape *tape = tape_of(t, &task);
     const bool seen = tape != NULL;
     if (!tape && t->n < MOST_TASKS) {
         tape = &t->tape[t->n++];
@@ -344,6 +355,13 @@ static void keep_outputs(struct tape *t, const struct program_run *r)
     }
 }
 
+void tape_none(struct tapes *all, const struct program_run *r, const struct run_result *out)
+{
+    const struct task task = task_of(r);
+    struct tape *t = all ? tape_of(all, &task) : NULL;
+    if (t && out->status == RUN_OK) t->stack_peak_bytes = out->stack_peak_bytes;
+}
+
 bool tape_end(struct tapes *all, struct tape *t, struct program_run *r, struct run_result *out)
 {
     const bool well = out->status == RUN_OK;
@@ -364,7 +382,9 @@ bool tape_end(struct tapes *all, struct tape *t, struct program_run *r, struct r
         return true;
     }
     keep_outputs(t, r);
-    t->stack_peak_bytes = out->stack_peak_bytes;
+    /* Writing takes stack as well: a run before that was not written down tells the program's. */
+    if (t->stack_peak_bytes) out->stack_peak_bytes = t->stack_peak_bytes;
+    else t->stack_peak_bytes = out->stack_peak_bytes;
     t->whole = true;
     all->bytes += bytes;
     return true;

@@ -36,6 +36,9 @@ size_t tape_workspace(const struct tape *t, int rank);
 void tape_rank(struct tape *t, struct comm *c, const struct rank_program *rank, const void *job,
                void *workspace);
 
+/* tape_none: the run is over, and had no tape: how much stack it took is kept. */
+void tape_none(struct tapes *all, const struct program_run *r, const struct run_result *out);
+
 /* tape_end: the run is over: its outputs are kept, or those of a tape that was repeated are given
  * to it. False: it did not end well and is to be made without the tape, which alone can tell
  * why. */

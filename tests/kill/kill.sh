@@ -1,6 +1,6 @@
 #!/bin/bash
 # kill.sh - campaigns, merges and upgrades are killed at seeded moments; the same command then ends as if nothing had
-# happened: every row of every table but the host's times equals that of a database that nobody disturbed.
+# happened: every row of every table but the host's times and stacks equals that of a database that nobody disturbed.
 #
 #     kill.sh [COUNT [SEED [SCENE...]]]      default: what `make check` runs; `make kill` runs 200 moments of all scenes
 #
@@ -21,8 +21,8 @@ cd "$folder"
 # random N: the next number below N of the seeded sequence (numerical recipes' 32-bit generator, its upper bits), in $r.
 random() { seed=$(((seed * 1664525 + 1013904223) & 0xffffffff)); r=$(((seed >> 8) % $1)); }
 
-# rows DB: every row of every table but the host's times and the numbers of rows, sorted; a run is its identity, a
-# setting its key and value, a build is the same for all.
+# rows DB: every row of every table but the host's times and stacks and the numbers of rows, sorted; a run is its
+# identity, a setting its key and value, a build is the same for all. (Runs share what ranks did: docs/campaigns.md.)
 rows() {
     local table columns
     for table in $(sqlite3 "$1" "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite_%' ORDER BY 1"); do
@@ -31,7 +31,7 @@ rows() {
                 WHEN name = 'setting_id' THEN '(SELECT key || value FROM setting s WHERE s.id = t.setting_id)'
                 ELSE 'quote(t.\"' || name || '\")' END, ' || ''|'' || ')
             FROM pragma_table_info('$table')
-            WHERE name NOT LIKE 'host%' AND name NOT IN ('created_utc', 'build_id', 'id')")
+            WHERE name NOT LIKE 'host%' AND name NOT IN ('stack_peak_bytes', 'created_utc', 'build_id', 'id')")
         [ -z "$columns" ] || sqlite3 "$1" "SELECT '$table|' || $columns FROM $table t" | sort
     done
 }
