@@ -19,9 +19,9 @@
 #include "study/audit.h"
 
 #ifdef SANITIZERS /* slow, and the rules are the same */
-enum { PICKS = 1 };
+enum { COLUMNS_APART = 4 };
 #else
-enum { PICKS = 3 };
+enum { COLUMNS_APART = 1 };
 #endif
 enum { MOST_COLUMNS = 80 };
 
@@ -334,30 +334,29 @@ static void all_mutants_that_matter_are_found(void **state)
         const struct table *t = &tables[k];
         struct tally of_table = {0};
         row(s, t, 0, &x);
-        for (int c = 0; c < x.n; c++)
-            for (int kind = 0; kind < KINDS; kind++)
-                for (int pick = 0; pick < PICKS && (kind != DELETED || c == 0); pick++) {
-                    struct text sql = {0}, word = {0};
-                    struct tally one = {0};
-                    static struct values names;
-                    /* Nobody misses a run that may never have been made, nor a point that nobody
-                     * asked for. */
-                    const bool whole = strcmp(t->key, "id") == 0;
-                    row(s, t, 0, &names);
-                    text_add(&word, " %s ", names.name[c]);
-                    const bool matters = kind == DELETED ? !whole : !strstr(t->free, word.s);
-                    if (mutate(s, t, c, (enum kind)kind, &r, &sql)) judge(s, sql.s, matters, &one);
-                    add(&of_table, &one);
-                    add(&of_kind[kind], &one);
-                    text_free(&sql);
-                    text_free(&word);
-                }
+        for (int c = 0; c < x.n; c += COLUMNS_APART)
+            for (int kind = 0; kind < KINDS && (kind != DELETED || c == 0); kind++) {
+                struct text sql = {0}, word = {0};
+                struct tally one = {0};
+                static struct values names;
+                /* Nobody misses a run that may never have been made, nor a point that nobody
+                 * asked for. */
+                const bool whole = strcmp(t->key, "id") == 0;
+                row(s, t, 0, &names);
+                text_add(&word, " %s ", names.name[c]);
+                const bool matters = kind == DELETED ? !whole : !strstr(t->free, word.s);
+                if (mutate(s, t, c, (enum kind)kind, &r, &sql)) judge(s, sql.s, matters, &one);
+                add(&of_table, &one);
+                add(&of_kind[kind], &one);
+                text_free(&sql);
+                text_free(&word);
+            }
         print(t->name, &of_table);
         add(&all, &of_table);
     }
     for (int kind = 0; kind < KINDS; kind++) print(kind_name[kind], &of_kind[kind]);
     print("all", &all);
-    assert_true(all.made > 250 * PICKS);
+    assert_true(all.made > 250 / COLUMNS_APART);
     assert_int_equal(all.by_all, all.made);
 }
 
