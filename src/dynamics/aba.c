@@ -51,7 +51,7 @@ static void from_joint_axes(const struct subspace *s, const real *schur, struct 
     real *flat[21];
     for (int k = 0; k < 6; k++) flat[k] = &out->a[k], flat[15 + k] = &out->c[k];
     for (int k = 0; k < 9; k++) flat[6 + k] = &out->b[k];
-    for (int k = 0; k < 21; k++) *flat[k] = 0;
+    for (int k = 0; k < 21; k++) *flat[k] = REAL(0);
     for (int i = 0; i < s->c; i++) {
         /* W has unit columns: rows and columns of S only move to their places. */
         if (s->pick) {
@@ -137,7 +137,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
     subspace_h_transposed(s, a, h);
     subspace_w_transposed(s, a, w);
     for (int k = 0; k < s->d; k++) {
-        z[k] = 0;
+        z[k] = REAL(0);
         for (int j = 0; j < s->c; j++) z[k] += b->wh[s->d * j + k] * w[j];
     }
     if (s->d > 0) dense_solve(s->d, 1, b->g, z, &uncounted);

@@ -57,10 +57,10 @@ static inline void rigid(const struct revolute *b, struct link *l)
     real mxx = S[0] + x * s[0], myy = S[3] + y * s[1], mzz = S[5] + z * s[2];
     l->a[0] = myy + mzz, l->a[3] = mxx + mzz, l->a[5] = mxx + myy;
     l->a[1] = -(S[1] + x * s[1]), l->a[2] = -(S[2] + x * s[2]), l->a[4] = -(S[4] + y * s[2]);
-    l->b[0] = l->b[4] = l->b[8] = 0;
+    l->b[0] = l->b[4] = l->b[8] = REAL(0);
     l->b[1] = -z, l->b[2] = y, l->b[3] = z, l->b[5] = -x, l->b[6] = -y, l->b[7] = x;
     l->c[0] = l->c[3] = l->c[5] = m;
-    l->c[1] = l->c[2] = l->c[4] = 0;
+    l->c[1] = l->c[2] = l->c[4] = REAL(0);
 }
 
 /* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n
@@ -72,7 +72,7 @@ enum {
 static inline bool eliminate(struct link *l, bool at_rest, real tau)
 {
     real *a = l->a, *b = l->b, *c = l->c, d = a[5];
-    if (!(d > 0)) return false;
+    if (!real_all(d > 0)) return false;
     /* (2.6) with H = z: D is one number, Q is row z of the inertia. One division, then products. */
     real inverse = 1 / d, e = tau - l->n[2];
     real kx = a[2] * inverse, ky = a[4] * inverse, k0 = b[6] * inverse, k1 = b[7] * inverse,
@@ -186,14 +186,16 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     int n = d->nbody;
     real *sine = d->scratch, *cosine = sine + n;
     struct link *link = (struct link *)(cosine + n);
-    struct motion *motion = (struct motion *)(link + n), base = {{0}, {0}};
+    struct motion *motion = (struct motion *)(link + n), base;
+    /* The base does not turn. */
+    vec3_zero(base.w);
     /* All angles in one loop that compilers turn into vectors. */
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
         struct link *l = &link[i];
         mat3_turn_z(l->r, b->e, sine[i], cosine[i]);
-        if (at_rest) vec3_set(l->n, 0, 0, 0), vec3_set(l->f, 0, 0, 0);
+        if (at_rest) vec3_zero(l->n), vec3_zero(l->f);
         else start(b, u[i], b->parent < 0 ? base.w : motion[b->parent].w, motion[i].w, l);
         rigid(b, l);
         if (d->load) {

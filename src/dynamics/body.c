@@ -7,7 +7,7 @@
 /* One rounding a number: what quad precision holds is exact as far as double is concerned. */
 static void round_to(real *y, const quad *x, int n)
 {
-    for (int i = 0; i < n; i++) y[i] = (real)x[i];
+    for (int i = 0; i < n; i++) y[i] = REAL(x[i]);
 }
 
 /* Inertia about both points: the bias force of a distant origin is computed about the centre of
@@ -16,7 +16,7 @@ static void make_inertia(const struct model *m, int i, struct body *b)
 {
     struct body_constants c;
     body_constants_inertia(m, i, &c);
-    b->m = b->inertia.m = (real)m->body[i].mass;
+    b->m = b->inertia.m = REAL(m->body[i].mass);
     round_to(b->s, c.s, 3);
     round_to(b->jc, c.jc, 6);
     round_to(b->inertia.ms, c.ms, 3);
@@ -39,7 +39,7 @@ static void make_frames(const struct model *m, int i, struct body *b)
     round_to(b->user, c.user, 9);
     round_to(b->slide, c.slide, 9);
     round_to(&b->unit, &c.unit, 1);
-    b->pitch = (real)def->pitch;
+    b->pitch = REAL(def->pitch);
     body_springs(m, i, b);
     /* The rate of a helical joint is u = q' / unit; unit is 1 for all others. */
     b->rate_stiffness *= b->unit;
@@ -61,7 +61,7 @@ static bool same_frames(const struct model *m, int i, int j)
  * nothing differs. */
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
-    if (REAL_BITS == 64 && m->constants) return m->constants;
+    if (REAL_BITS == 64 && REAL_LANES == 1 && m->constants) return m->constants;
     struct body *b = TAKE(a, m->nbody, struct body);
     for (int i = 0; i < m->nbody; i++) {
         if (i > 0) b[i] = b[i - 1];
@@ -76,7 +76,7 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
 void base_motion(const struct model *m, const struct state *s, real *a)
 {
     for (int i = 0; i < 6; i++)
-        a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
+        a[i] = REAL(s->base_acceleration[i]) - REAL(i < 3 ? 0 : m->gravity[i - 3]);
 }
 
 /* For codes that multiply the inertia out of its factors (kernel/chain.c, forward_exact.c). */
@@ -84,7 +84,7 @@ void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     /* [U, s~; 0, U] and diag(Jc, m U): the inertia about the origin as a product */
-    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    for (int i = 0; i < 6; i++) shift[7 * i] = REAL(1);
     shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
     shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
     for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->jc[at[i]];
@@ -97,7 +97,7 @@ void body_load(const struct body *b, const double *fext, real *f)
     /* users give [force; moment], here the moment comes first */
     screw_zero(f);
     if (!fext) return;
-    for (int i = 0; i < 3; i++) f[i] = (real)fext[3 + i], f[3 + i] = (real)fext[i];
+    for (int i = 0; i < 3; i++) f[i] = REAL(fext[3 + i]), f[3 + i] = REAL(fext[i]);
     /* and in user axes */
     if (!b->turned) return;
     mat3_mul_vec_transposed(f, b->user, f);

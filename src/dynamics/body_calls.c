@@ -57,10 +57,10 @@ void body_springs(const struct model *m, int i, struct body *b)
 {
     const struct body_def *def = &m->body[i];
     b->has_spring = def->stiffness != 0 || def->damping != 0;
-    b->stiffness = (real)def->stiffness;
+    b->stiffness = REAL(def->stiffness);
     b->rate_stiffness = b->stiffness; /* q' = u */
-    b->rest = (real)def->rest;
-    b->damping = (real)def->damping;
+    b->rest = REAL(def->rest);
+    b->damping = REAL(def->damping);
 }
 
 /* h = H u = [w_J; v_J]. */

@@ -31,7 +31,7 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a)
     if (d->revolute) d->scratch = TAKE(a, size_product(DYNAMICS_SCRATCH, m->nbody + 2), real);
     d->arena = a;
     /* A base at rest in a field of gravity accelerates against it. */
-    for (int i = 0; i < 3; i++) d->base[3 + i] = -(real)m->gravity[i];
+    for (int i = 0; i < 3; i++) d->base[3 + i] = -REAL(m->gravity[i]);
     return d;
 }
 

@@ -25,7 +25,7 @@ static void qdot(const struct body *b, const real *q, const real *u, real *qd)
 static void step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[7];
-    const real half = (real)0.5 * h;
+    const real half = REAL(0.5) * h;
     quaternion_step(q + 3, u + 3, half);
     qdot(b, q, u, rate);
     for (int i = 0; i < 3; i++) q[i] += h * rate[i];

@@ -7,13 +7,13 @@ static void subspace(const struct body *b, const real *q, struct subspace *s)
 {
     static const signed char others[4] = {0, 1, 3, 4};
     (void)q;
-    for (int k = 0; k < 36; k++) s->col[k] = 0;
+    for (int k = 0; k < 36; k++) s->col[k] = REAL(0);
     /* the columns of the angle and of the advance along it mix; both have length 1 */
     const real advance = b->unit * b->pitch;
     s->col[2] = b->unit, s->col[5] = advance;
     s->col[6 + 2] = -advance, s->col[6 + 5] = b->unit;
     /* nothing else moves */
-    for (int k = 0; k < 4; k++) s->col[6 * (2 + k) + others[k]] = 1;
+    for (int k = 0; k < 4; k++) s->col[6 * (2 + k) + others[k]] = REAL(1);
 }
 
 /* r = E Rz(q), p = t + pitch q E z; the columns come along, since a pose has them. */

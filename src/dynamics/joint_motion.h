@@ -101,7 +101,7 @@ static inline void quaternion_place(const struct body *b, const real *quat, stru
 enum { QUATERNION_RATE = 24 };
 static inline void quaternion_rate(const real *c, const real *w, real *cd)
 {
-    real half = (real)0.5;
+    real half = REAL(0.5);
     cd[0] = half * (c[3] * w[0] + c[1] * w[2] - c[2] * w[1]);
     cd[1] = half * (c[3] * w[1] + c[2] * w[0] - c[0] * w[2]);
     cd[2] = half * (c[3] * w[2] + c[0] * w[1] - c[1] * w[0]);
@@ -113,10 +113,10 @@ static inline void quaternion_rate(const real *c, const real *w, real *cd)
 enum { QUATERNION_STEP = 49 };
 static inline void quaternion_step(real *c, const real *w, real h)
 {
-    const real norm = vec3_norm(w), half = (real)0.5 * h;
+    const real norm = vec3_norm(w), half = REAL(0.5) * h;
     real s, k;
     angle_sincos(half * norm, &s, &k);
-    real f = norm > 0 ? s / norm : half;
+    real f = real_where(norm > 0, s / norm, half);
     real x = f * w[0], y = f * w[1], z = f * w[2];
     real n[4] = {
         c[0] * k + c[3] * x + c[1] * z - c[2] * y, c[1] * k + c[3] * y + c[2] * x - c[0] * z,

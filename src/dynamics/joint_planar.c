@@ -6,7 +6,7 @@
 static void place(const struct body *b, const real *q, struct body_pose *pose)
 {
     turn_about_z(b->tree.r, q[0], pose->x.r);
-    shift(&b->tree, q[1], q[2], 0, pose->x.p);
+    shift(&b->tree, q[1], q[2], REAL(0), pose->x.p);
 }
 
 /* The origin's velocity is given in body axes, its place in joint axes. */
@@ -23,7 +23,7 @@ static void qdot(const struct body *b, const real *q, const real *u, real *qd)
 static void step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[3];
-    const real half = (real)0.5 * h;
+    const real half = REAL(0.5) * h;
     q[0] += half * u[0];
     qdot(b, q, u, rate);
     for (int i = 1; i < 3; i++) q[i] += h * rate[i];

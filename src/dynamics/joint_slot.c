@@ -17,9 +17,9 @@ static void slide_by(const struct body *b, const real *x, real *d)
 enum { COLUMNS = 3 * MAT3_VEC_FLOP };
 static void columns(const struct body *b, const real *rotation, struct subspace *s)
 {
-    for (int k = 0; k < 36; k++) s->col[k] = 0;
+    for (int k = 0; k < 36; k++) s->col[k] = REAL(0);
     for (int k = 0; k < 3; k++) {
-        s->col[6 * k + k] = 1; /* any turn */
+        s->col[6 * k + k] = REAL(1); /* any turn */
         /* the free directions come first, then those of W */
         mat3_mul_vec_transposed(s->col + 6 * (3 + k) + 3, rotation, b->slide + 3 * k);
     }

@@ -5,12 +5,12 @@
 /* H = [(cos b, 0, sin b); 0], [y; 0]; W = [(-sin b, 0, cos b); 0], [0; U]. b: the second angle. */
 static void columns(real sine, real cosine, struct subspace *s)
 {
-    for (int k = 0; k < 36; k++) s->col[k] = 0;
+    for (int k = 0; k < 36; k++) s->col[k] = REAL(0);
     /* the first axis as the body sees it, the second one, and what is orthogonal to both */
     s->col[0] = cosine, s->col[2] = sine;
-    s->col[6 + 1] = 1;
+    s->col[6 + 1] = REAL(1);
     s->col[12] = -sine, s->col[14] = cosine;
-    for (int k = 3; k < 6; k++) s->col[6 * k + k] = 1;
+    for (int k = 3; k < 6; k++) s->col[6 * k + k] = REAL(1);
 }
 
 /* The columns depend on the second angle alone. */

@@ -8,7 +8,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
     struct revolute *out = TAKE(a, m->nbody, struct revolute);
     for (int i = 0; i < m->nbody; i++) {
         struct revolute *r = &out[i];
-        const real *j = b[i].jc, half = (real)0.5;
+        const real *j = b[i].jc, half = REAL(0.5);
         for (int k = 0; k < 9; k++) r->e[k] = b[i].tree.r[k];
         vec3_copy(r->t, b[i].tree.p);
         r->m = b[i].m;

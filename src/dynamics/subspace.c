@@ -34,7 +34,7 @@ void subspace_w_transposed(const struct subspace *s, const real *x, real *y)
 void subspace_column(const struct subspace *s, int k, real *y)
 {
     screw_zero(y);
-    if (s->pick) y[s->pick[k]] = 1;
+    if (s->pick) y[s->pick[k]] = REAL(1);
     else screw_copy(y, s->col + SPACE * k);
 }
 

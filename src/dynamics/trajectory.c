@@ -8,7 +8,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
-#include "dynamics/integrate.h"
+#include "dynamics/differences.h"
 
 static const char *const names[] = {"rk2",    "rk4",    "rkf45",  "rkck",  "rk8pd", "msadams",
                                     "rk1imp", "rk2imp", "rk4imp", "bsimp", "msbdf", NULL};
@@ -26,49 +26,20 @@ static const gsl_odeiv2_step_type *stepper_of(int i)
     return type[i];
 }
 
-struct flow {
-    struct dynamics *d;
-    const double *tau;
-    long evaluations, most;
-    double *shifted, *change; /* (nq + nu) for the Jacobian */
-};
-
-/* dy = f(y). */
+/* dy = f(y), and how it changes with y, as GSL calls them. */
 static int derivative(double t, const double y[], double dy[], void *context)
 {
-    struct flow *f = context;
-    const struct model *m = f->d->model;
     (void)t;
-    /* GSL would go on for ever where steps vanish. */
-    if (++f->evaluations > f->most) return GSL_EBADFUNC;
-    for (int i = 0; i < m->nbody; i++) {
-        const struct body *b = &f->d->body[i];
-        body_qdot(b, y + b->q_at, y + m->nq + b->u_at, dy + b->q_at);
-    }
-    bool good = dynamics_forward(f->d, y, y + m->nq, f->tau, dy + m->nq, NULL);
-    return good ? GSL_SUCCESS : GSL_EBADFUNC;
+    return differences_derivative(context, y, dy) ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
-/* Central differences, column by column. */
 static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *context)
 {
-    struct flow *f = context;
-    int n = f->d->model->nq + f->d->model->nu;
-    for (int i = 0; i < n; i++) f->shifted[i] = y[i], dfdt[i] = 0;
-    /* A step that balances rounding against the third derivative: the cube root of eps. */
-    for (int j = 0; j < n; j++) {
-        /* Coordinates near zero are taken as a hundredth, so that h does not vanish. */
-        double h = 6e-6 * fmax(fabs(y[j]), 1e-2);
-        f->shifted[j] = y[j] + h;
-        int bad = derivative(t, f->shifted, f->change, f);
-        for (int i = 0; i < n; i++) dfdy[i * n + j] = f->change[i];
-        f->shifted[j] = y[j] - h;
-        bad = bad ? bad : derivative(t, f->shifted, f->change, f);
-        for (int i = 0; i < n; i++) dfdy[i * n + j] = (dfdy[i * n + j] - f->change[i]) / (2 * h);
-        f->shifted[j] = y[j];
-        if (bad) return bad;
-    }
-    return GSL_SUCCESS;
+    const struct differences *f = context;
+    (void)t;
+    /* Nothing depends on time alone. */
+    for (int i = 0; i < f->d->model->nq + f->d->model->nu; i++) dfdt[i] = 0;
+    return differences_jacobian(context, y, dfdy) ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
 /* y -> state, quaternions normalised. */
@@ -140,12 +111,8 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
                                      "finite", options->stepper, duration);
     struct arena_mark mark = arena_mark(scratch);
     /* q and u as one vector of plain numbers. */
-    struct flow f = {.d = dynamics_take(m, scratch),
-                     .tau = s->tau,
-                     .shifted = TAKE(scratch, n, double),
-                     .change = TAKE(scratch, n, double)};
-    f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
-    dynamics_load(f.d, s);
+    const long most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
+    struct differences f = differences_make(m, s, most, lanes_type_widest(), scratch);
     double *y = TAKE(scratch, n, double);
     /* q first, then u; the state itself stays as it is until the end is known to be good. */
     memcpy(y, s->q, (size_t)m->nq * sizeof *y);

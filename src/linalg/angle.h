@@ -49,6 +49,18 @@ static inline void angle_sincos_core(double x, double *s, double *c)
 
 #endif
 
+#if REAL_LANES > 1
+
+/* The batch of doubles (angle.c): an angle's bits do not depend on its place among others. */
+static inline void angle_sincos_batch(int n, const real *x, real *s, real *c)
+{
+    void angle_sincos_batch_f64(int, const double *restrict, double *restrict, double *restrict);
+    angle_sincos_batch_f64(n * REAL_LANES, (const double *)x, (double *)s, (double *)c);
+}
+static inline void angle_sincos(real x, real *s, real *c) { angle_sincos_batch(1, &x, s, c); }
+
+#else
+
 /* angle_sincos: *s = sin x, *c = cos x. */
 static inline void angle_sincos(real x, real *s, real *c)
 {
@@ -66,4 +78,5 @@ static inline void angle_sincos(real x, real *s, real *c)
  * host has; the same bits as angle_sincos of each. s, c may not overlap x. */
 void angle_sincos_batch(int n, const real *restrict x, real *restrict s, real *restrict c);
 
+#endif
 #endif

@@ -33,7 +33,7 @@ bool dense_factor(int c, const real *A, real *G, struct work *w)
             pivot -= row[j] * g[j];
         }
         /* Not positive definite, or not a number. */
-        if (!(pivot > 0)) return false;
+        if (!real_all(pivot > 0)) return false;
         g[i] = 1 / pivot;
     }
     return true;
@@ -112,6 +112,8 @@ void dense_subtract(int n, real *a, const real *b, struct work *w)
     for (int i = 0; i < n; i++) a[i] -= b[i];
 }
 
+#if REAL_LANES == 1 /* where pivots are compared, each scene goes its own way */
+
 /* Gauss-Jordan in place: column k of the matrix becomes column k of the inverse. */
 bool dense_invert(int c, real *A, struct work *w)
 {
@@ -175,3 +177,5 @@ bool dense_solve_general(int n, int m, real *A, real *B, struct work *w)
     }
     return true;
 }
+
+#endif

@@ -97,7 +97,7 @@ static inline void sym6_mul(real *y, const struct sym6 *s, const real *x)
 /* sym6_from_inertia: the 6x6 [J, ms~; -ms~, m U]. */
 static inline void sym6_from_inertia(struct sym6 *s, const struct inertia *in)
 {
-    for (int i = 0; i < 6; i++) s->a[i] = in->j[i], s->c[i] = 0;
+    for (int i = 0; i < 6; i++) s->a[i] = in->j[i], s->c[i] = REAL(0);
     mat3_skew(s->b, in->ms);
     s->c[0] = s->c[3] = s->c[5] = in->m;
 }

@@ -6,12 +6,19 @@
  * precision and the space: the build makes real_names.h from the headers (real_names.awk), so that
  * the plain name always means "in this file's precision and space". Without REAL_BITS it is double,
  * without SPACE it is six components. Answers of another precision are reached through const tables
- * of functions (dynamics_table.h, kernel.h). */
+ * of functions (dynamics_table.h, kernel.h).
+ *
+ * With REAL_LANES 4 or 8 a `real` is that many doubles side by side, of as many states (lanes.h).
+ * What is one number for all of them is written REAL(x), and a comparison that all of them must
+ * pass real_all(x > y). */
 #ifndef LINALG_REAL_H
 #define LINALG_REAL_H
 
 #ifndef REAL_BITS
 #define REAL_BITS 64
+#endif
+#ifndef REAL_LANES
+#define REAL_LANES 1
 #endif
 
 #if REAL_BITS == 32
@@ -24,6 +31,9 @@ typedef float real;
 #define real_sin sinf
 #define real_cos cosf
 #define real_exp expf
+#elif REAL_BITS == 64 && REAL_LANES > 1
+#include "linalg/lanes.h"
+#define REAL_EPSILON 2.2204460492503131e-16
 #elif REAL_BITS == 64
 #include <math.h>
 typedef double real;
@@ -51,6 +61,12 @@ __float128 expq(__float128);
 #define real_exp expq
 #else
 #error "REAL_BITS must be 32, 64 or 128"
+#endif
+
+#if REAL_LANES == 1
+#define REAL(x) ((real)(x))
+#define real_all(condition) (condition)
+#define real_where(condition, x, y) ((condition) ? (x) : (y))
 #endif
 
 #ifndef SPACE

@@ -39,7 +39,7 @@ static inline void screw_copy(real *y, const real *x)
 }
 static inline void screw_zero(real *y)
 {
-    for (int i = 0; i < 6; i++) y[i] = 0;
+    for (int i = 0; i < 6; i++) y[i] = REAL(0);
 }
 static inline void screw_add(real *y, const real *x)
 {
@@ -64,7 +64,7 @@ static inline real screw_dot(const real *x, const real *y)
 static inline void xform_identity(struct xform *x)
 {
     mat3_identity(x->r);
-    vec3_set(x->p, 0, 0, 0);
+    vec3_zero(x->p);
 }
 
 /* xform_force: y = X f, child -> parent: f' = r f, n' = r n + p x f' (physics of screws; 42 flops).
@@ -95,7 +95,7 @@ static inline void xform_slide(real *y, const struct xform *x, const real *v)
 {
     real t[3];
     mat3_mul_vec_transposed(t, x->r, v + 3);
-    vec3_set(y, 0, 0, 0);
+    vec3_zero(y);
     vec3_copy(y + 3, t);
 }
 
@@ -112,7 +112,7 @@ static inline void xform_compose(struct xform *c, const struct xform *a, const s
  * 0 U] [r 0; 0 r]. */
 static inline void xform_factors(const struct xform *x, real *shift, real *turn)
 {
-    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    for (int i = 0; i < 6; i++) shift[7 * i] = REAL(1);
     shift[4] = -x->p[2], shift[5] = x->p[1], shift[9] = x->p[2];
     shift[11] = -x->p[0], shift[15] = -x->p[1], shift[16] = x->p[0];
     for (int i = 0; i < 3; i++)

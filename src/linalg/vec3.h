@@ -8,8 +8,9 @@
 
 #include "linalg/real.h"
 
-/* vec3_set: y = (a, b, c). vec3_copy: y = x. */
+/* vec3_set: y = (a, b, c). vec3_zero: y = 0. vec3_copy: y = x. */
 static inline void vec3_set(real *y, real a, real b, real c) { y[0] = a, y[1] = b, y[2] = c; }
+static inline void vec3_zero(real *y) { y[0] = y[1] = y[2] = REAL(0); }
 static inline void vec3_copy(real *y, const real *x) { y[0] = x[0], y[1] = x[1], y[2] = x[2]; }
 
 /* vec3_add: y += x. vec3_sub: y -= x. vec3_scale: y = a x; y may be x. */
@@ -110,13 +111,13 @@ static inline void mat3_transpose(real *y, const real *x)
 }
 static inline void mat3_identity(real *y)
 {
-    for (int i = 0; i < 9; i++) y[i] = i % 4 == 0;
+    for (int i = 0; i < 9; i++) y[i] = REAL(i % 4 == 0);
 }
 static inline void mat3_skew(real *y, const real *x)
 {
-    y[0] = 0, y[1] = -x[2], y[2] = x[1];
-    y[3] = x[2], y[4] = 0, y[5] = -x[0];
-    y[6] = -x[1], y[7] = x[0], y[8] = 0;
+    y[0] = REAL(0), y[1] = -x[2], y[2] = x[1];
+    y[3] = x[2], y[4] = REAL(0), y[5] = -x[0];
+    y[6] = -x[1], y[7] = x[0], y[8] = REAL(0);
 }
 
 /* sym3_mul_vec: y = S x; y may be x. 15 flops. */
