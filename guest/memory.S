@@ -22,8 +22,8 @@ mimdsim_\name:
     .size mimdsim_\name, .-mimdsim_\name
     .section mimdsim_blocks,"ao",@progbits,\label
     .balign 4
-    .long \label-4-.
-    .value 0, 0, 0, 0, 0, 0, \counts, 0, 0, 0, 0, 0, 0, 1
+    .long \label-4-., 0
+    .value 0, 0, 0, 0, 0, 0, \counts, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1
     .endm
 
     counted memcpy, .Lcopy, 2048

@@ -15,7 +15,8 @@ enum { PATH_SIZE = 4096, MOST_ARGUMENTS = 16384 };
 
 _Noreturn void mimdsim_execute(char **stack, const char *program);
 
-static long system_call(long number, const void *a, const void *b, const void *c)
+/* Numbers and addresses alike. */
+static long system_call(long number, size_t a, size_t b, size_t c)
 {
     long result;
     __asm__ volatile("syscall"
@@ -32,7 +33,7 @@ static size_t length(const char *s)
     return n;
 }
 
-static void say(const char *s) { system_call(CALL_WRITE, (void *)2, s, (void *)length(s)); }
+static void say(const char *s) { system_call(CALL_WRITE, 2, (size_t)s, length(s)); }
 
 /* The environment's variable `name` ("PATH="), NULL: not set. */
 static const char *variable(char **environment, const char *name)
@@ -57,7 +58,7 @@ static void execute_from_path(char **argument, char **environment)
         if (n > 0 && n + sizeof name <= sizeof path) {
             for (size_t i = 0; i < n; i++) path[i] = s[i];
             for (size_t i = 0; i < sizeof name; i++) path[n + i] = name[i];
-            system_call(CALL_EXECVE, path, argument, environment);
+            system_call(CALL_EXECVE, (size_t)path, (size_t)argument, (size_t)environment);
         }
         s += n + (s[n] == ':');
     }
@@ -70,7 +71,8 @@ _Noreturn void mimdsim_execute(char **stack, const char *program)
     const long argc = (long)stack[0];
     char image[PATH_SIZE], **environment = stack + argc + 2;
     char *argument[MOST_ARGUMENTS + 8];
-    const long n = system_call(CALL_READLINK, "/proc/self/exe", image, (void *)(sizeof image - 1));
+    const long n =
+        system_call(CALL_READLINK, (size_t) "/proc/self/exe", (size_t)image, sizeof image - 1);
     int count = 0;
     if (n > 0 && argc < MOST_ARGUMENTS) {
         image[n] = '\0';
@@ -78,12 +80,12 @@ _Noreturn void mimdsim_execute(char **stack, const char *program)
         argument[count++] = image;
         for (long i = 1; i < argc; i++) argument[count++] = stack[1 + i];
         argument[count] = NULL;
-        system_call(CALL_EXECVE, program, argument, environment);
+        system_call(CALL_EXECVE, (size_t)program, (size_t)argument, (size_t)environment);
         execute_from_path(argument, environment);
     }
     say("this program was compiled by `mimdsim cc` and runs on virtual processors: mimdsim was not "
         "found at ");
     say(program);
     say(" nor in PATH\n");
-    for (;;) system_call(CALL_EXIT, (void *)STATUS_UNAVAILABLE, NULL, NULL);
+    for (;;) system_call(CALL_EXIT, STATUS_UNAVAILABLE, 0, 0);
 }

@@ -7,14 +7,14 @@
 #include <mimdsim/program.h>
 
 enum { SUM, SCALED, BLUR, VECTOR, RECURRENCE, POLYNOMIAL, DRAW, CHASE, COUNT, SCAN, RATIO, ROOT,
-       LOADS, MORE_LOADS, ROWS, MIX };
+       LOADS, MORE_LOADS, ROWS, MIX, ADDITIONS, PRODUCTS, POWERS, SHIFTED };
 enum { MOST = 16384, RING = 512, NEAR = 768 };
 
 /* Places of different arrays are not a multiple of 4 KiB apart, where a load would be taken for one
  * of what was stored last. */
 enum { APART = 72 };
 
-static int64_t length = 12288, rounds = 40;
+static int64_t length = 12288, rounds = 20;
 static int loop = SUM;
 
 static double *a, *b, *c; /* (length) */
@@ -171,6 +171,43 @@ static double mix(int64_t n, double by)
     return c[5] + by;
 }
 
+/* Floating-point units: many additions, and many products, of what was loaded once. */
+static double additions(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) {
+            const double x = a[i], y = b[i];
+            c[i] = ((x + y) + (x + by)) + ((y - by) + (x - 0.1)) + ((y + 0.2) - (0.3 - x)) + (0.4 - y);
+        }
+    return c[5];
+}
+
+static double products(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) {
+            const double x = a[i], y = b[i];
+            c[i] = ((x * y) * (x * by)) * ((y * 1.01) * (x * 0.9)) * ((y * 0.8) * (x * 1.2)) * (y * 1.1);
+        }
+    return c[5];
+}
+
+/* Each product waits for the one before. */
+static double powers(int64_t n, double by)
+{
+    double x = 1 + by;
+    for (int64_t i = 0; i < n; i++) x *= 0.999999;
+    return x;
+}
+
+/* A short loop: few instructions, none of which waits. */
+static double shifted(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) c[i] = a[i] + by;
+    return c[5];
+}
+
 static double once(int64_t n, double by)
 {
     switch (loop) {
@@ -204,6 +241,14 @@ static double once(int64_t n, double by)
         return rows(n, by);
     case MIX:
         return mix(n, by);
+    case ADDITIONS:
+        return additions(n, by);
+    case PRODUCTS:
+        return products(n, by);
+    case POWERS:
+        return powers(n, by);
+    case SHIFTED:
+        return shifted(n, by);
     default:
         return scan(n, by);
     }
@@ -227,6 +272,7 @@ PROGRAM(.title = "loops of several kinds",
                       PROGRAM_WHOLE(rounds, 1, 1e6, "how often it is made"),
                       PROGRAM_CHOICE(loop,
                                      "sum|scaled|blur|vector|recurrence|polynomial|draw|chase|"
-                                     "count|scan|ratio|root|loads|more_loads|rows|mix",
+                                     "count|scan|ratio|root|loads|more_loads|rows|mix|"
+                                     "additions|products|powers|shifted",
                                      "which loop")},
         .output = {"result"}, .run = run, .serial = {{"the same", run}}, .tolerance = 1e-12);

@@ -39,6 +39,7 @@ struct filter {
     struct block block;
     struct code code; /* blocks of this function that are not yet in `table` */
     int blocks;
+    int repeated;  /* block that leads back to itself and ends on this line, 0: none */
     bool begins;   /* the next instruction begins a block */
     bool reached;  /* control can come there from above */
     bool in_asm;   /* between #APP and #NO_APP */
@@ -155,21 +156,6 @@ static void begin_block(struct filter *f)
     text_add(f->out, "{disp32} leaq 0(%%r15), %%r15\n.Lmimdsim%d:\n", f->block.code.number);
 }
 
-/* Sums by class. */
-static void add_counts(struct block_counts *sum, const struct block_counts *c)
-{
-    sum->instruction += c->instruction;
-    sum->flop += c->flop;
-    sum->div += c->div;
-    sum->sqrt += c->sqrt;
-    sum->trig += c->trig;
-    sum->call += c->call;
-    sum->bytes += c->bytes;
-    sum->issue += c->issue;
-    sum->load += c->load;
-    sum->whole += c->whole;
-}
-
 /* Thread-local addresses are computed by sequences of fixed bytes that the linker replaces. */
 static bool is_in_sequence(const struct asm_statement *s)
 {
@@ -206,11 +192,16 @@ static bool take_instruction(struct filter *f, const struct asm_statement *s)
     f->holds = is_in_sequence(s);
     if (f->in_asm) {
         f->branched = f->branched || flow != FLOW_ON;
-        if (f->now == f->block.section) add_counts(&f->block.code.counts, &counts);
+        if (f->now == f->block.section) code_add_counts(&f->block.code.counts, &counts);
         return true;
     }
-    add_counts(&f->block.code.counts, &counts);
+    code_add_counts(&f->block.code.counts, &counts);
     code_add_line(&f->code, s->word, s->operands);
+    /* How long a loop of one block is tells a label behind it. */
+    if (flow == FLOW_BRANCH && block_has_label(&f->block.code, s->operands)) {
+        f->block.code.repeats = true;
+        f->repeated = f->block.code.number;
+    }
     if (flow != FLOW_ON) leave_block(f, flow != FLOW_AWAY);
     return true;
 }
@@ -327,6 +318,8 @@ static bool take_line(struct filter *f, const char *line, const char *end)
     }
     text_add_bytes(f->out, copied, (size_t)(end - copied));
     text_add(f->out, "\n");
+    if (f->repeated != 0) text_add(f->out, ".Lmimdsim_t%d:\n", f->repeated);
+    f->repeated = 0;
     return true;
 }
 

@@ -4,12 +4,14 @@
 
 #include <string.h>
 
+#include "loader/block_table.h"
+
 /* Bits: 16 general registers, 32 of vectors, the flags, masks and x87 together. */
 enum { VECTOR_FIRST = 16, FLAGS = 48, OTHERS = 49, REGISTERS = 50 };
 
 /* Cycles by which the longest of several chains is chosen. They are those of many processors of the
  * last ten years (Fog, "Instruction tables"); what they take on a machine is its file's matter. */
-enum { LOAD = 4, ADD = CHAIN_ADDITION, PRODUCT = 4, CONVERT = 4 };
+enum { LOAD = 4, ADD = CHAIN_ADDITION, PRODUCT = BLOCK_PRODUCT_CYCLES, CONVERT = 4 };
 enum { MULTIPLY = 3, DIVIDE = 13, ROOT = 18 };
 
 /* --- registers -------------------------------------------------------------------------------- */
@@ -97,14 +99,14 @@ static bool writes_nothing(struct span m)
     return starts_with_one_of(m, none) && !starts_with_one_of(m, packed);
 }
 
-/* Nominal cycles by the mnemonic; *flop tells a floating-point addition. */
-static uint8_t cycles_of(struct span m, struct span operands, bool *flop)
+/* Nominal cycles by the mnemonic; *unit tells floating-point additions and products. */
+static uint8_t cycles_of(struct span m, struct span operands, uint8_t *unit)
 {
     static const char *const sums[] = {"add", "sub", "min", "max", NULL};
     static const char *const products[] = {"mul", "fm", "fnm", "hadd", "hsub", "dpp", NULL};
     static const char *const moves[] = {"mov", "vmov", "lea", NULL};
     const bool vector = span_find(operands, "mm") >= 0;
-    *flop = false;
+    *unit = STEP_OTHER;
     /* Moves among registers are renaming; movzbl and the like are not, but nearly. */
     if (starts_with_one_of(m, moves)) return span_starts(m, "lea");
     const struct span plain = m.s[0] == 'v' ? (struct span){m.s + 1, m.n - 1} : m;
@@ -115,9 +117,11 @@ static uint8_t cycles_of(struct span m, struct span operands, bool *flop)
     if (span_starts(plain, "div")) return DIVIDE;
     if (span_starts(plain, "sqrt")) return ROOT;
     if (span_starts(plain, "cvt")) return CONVERT;
+    if (span_starts(plain, "mul")) *unit = STEP_PRODUCT;
     if (starts_with_one_of(plain, products)) return PRODUCT;
-    *flop = starts_with_one_of(plain, sums);
-    return *flop ? ADD : 1;
+    if (!starts_with_one_of(plain, sums)) return 1;
+    *unit = STEP_ADDITION;
+    return ADD;
 }
 
 /* xor, pxor and sub of a register with itself give zero without waiting for it. */
@@ -175,7 +179,7 @@ struct chain_step chain_step_of(struct span m, struct span operands)
     }
     const bool to_register = n > 0 && last.s[0] == '%' && !writes_nothing(m);
     if (to_register) s.writes = registers_of(last);
-    s.cycles = cycles_of(m, operands, &s.flop);
+    s.cycles = cycles_of(m, operands, &s.unit);
     if (clears(m, operands)) s.reads = 0;
     else if (to_register && n > 1 && overwrites(m, operands)) {
         /* Read nevertheless if it is named twice: vaddsd %xmm1, %xmm0, %xmm0. */
@@ -212,9 +216,12 @@ void chain_join(struct chain *c, int place) { add_mark(c, STEP_JOIN, place); }
 
 /* --- the loop --------------------------------------------------------------------------------- */
 
-/* When a register is there, and what the chain that led to it is made of. */
+/* When a register is there, what the chain that led to it is made of, and whether an addition ends
+ * it. */
 struct moment {
-    int time, flop, cycles;
+    int time;
+    struct chain_length made;
+    bool added;
 };
 
 /* All registers on the way through a round, and as they are on the ways to places farther on. */
@@ -236,11 +243,18 @@ static void execute_step(const struct chain_step *s, struct moment at[REGISTERS]
 {
     struct moment now = {0};
     wait_for(&now, at, s->address);
-    if (s->loads) now.time += LOAD, now.cycles += LOAD;
+    if (s->loads) now.time += LOAD, now.made.cycles += LOAD, now.added = false;
     wait_for(&now, at, s->reads);
     now.time += s->cycles;
-    if (s->flop) now.flop++;
-    else now.cycles += s->cycles;
+    if (s->unit == STEP_ADDITION) {
+        now.made.flop++;
+        now.made.late += !now.added;
+    } else {
+        now.made.cycles += s->cycles;
+        now.made.product += s->unit == STEP_PRODUCT;
+    }
+    /* A move among registers hands on what it got. */
+    if (s->cycles > 0) now.added = s->unit == STEP_ADDITION;
     for (int r = 0; r < REGISTERS; r++)
         if (s->writes >> r & 1) at[r] = now;
 }
@@ -289,23 +303,35 @@ static struct moment latest(const struct moment at[REGISTERS])
     return most;
 }
 
+/* Rounds that are made before the longest chain is measured, and while it is. */
+enum { WARM = 16, ROUNDS = 16 };
+
+/* Of ROUNDS, to the nearest. */
+static int each(int sum) { return (sum + ROUNDS / 2) / ROUNDS; }
+
+struct chain_length chain_parted(struct chain_length l)
+{
+    if (l.product * PRODUCT > l.cycles) l.product = l.cycles / PRODUCT;
+    return l;
+}
+
 struct chain_length chain_round(const struct chain *c)
 {
-    enum { WARM = 16, ROUNDS = 16 };
     struct state x = {.here = true};
     /* After some rounds the longest chain has outgrown the others, and each round adds the same. */
     for (int i = 0; i < WARM; i++) execute(c, &x);
-    const struct moment begin = latest(x.at);
+    const struct chain_length begin = latest(x.at).made;
     for (int i = 0; i < ROUNDS; i++) execute(c, &x);
-    const struct moment end = latest(x.at);
-    return (struct chain_length){.flop = (end.flop - begin.flop + ROUNDS / 2) / ROUNDS,
-                                 .cycles = (end.cycles - begin.cycles + ROUNDS / 2) / ROUNDS};
+    const struct chain_length end = latest(x.at).made;
+    return chain_parted((struct chain_length){.flop = each(end.flop - begin.flop),
+                                              .cycles = each(end.cycles - begin.cycles),
+                                              .late = each(end.late - begin.late),
+                                              .product = each(end.product - begin.product)});
 }
 
 struct chain_length chain_once(const struct chain *c)
 {
     struct state x = {.here = true};
     execute(c, &x);
-    const struct moment end = latest(x.at);
-    return (struct chain_length){end.flop, end.cycles};
+    return latest(x.at).made;
 }

@@ -20,10 +20,16 @@ enum { CHAIN_ADDITION = 3 }; /* nominal cycles of a floating-point addition */
 struct chain_step {
     uint64_t address, reads, writes; /* registers */
     uint8_t cycles;                  /* nominal, without those of its load */
-    bool flop;                       /* floating-point addition, or minimum and the like */
+    uint8_t unit;                    /* enum step_unit */
     bool loads;
     uint8_t kind;  /* enum step_kind */
     uint8_t place; /* of a jump and of what it leads to */
+};
+
+enum step_unit {
+    STEP_OTHER,
+    STEP_ADDITION, /* of floating-point numbers, or minimum and the like */
+    STEP_PRODUCT   /* of floating-point numbers, not fused */
 };
 
 enum step_kind {
@@ -40,9 +46,11 @@ struct chain {
 };
 
 /* A round of the longest chain: its floating-point additions, and the nominal cycles of all its
- * other instructions (1; a load 4, a product 4 and one of integers 3, a division 13, a root 18). */
+ * other instructions (1; a load 4, a product 4 and one of integers 3, a division 13, a root 18). Of
+ * the additions `late` wait for something else than an addition, and of the cycles those of
+ * `product` products are a part (BLOCK_PRODUCT_CYCLES each). */
 struct chain_length {
-    int flop, cycles;
+    int flop, cycles, late, product;
 };
 
 /* chain_step_of: the registers and cycles of an instruction. chain_registers: the bits of the
@@ -62,6 +70,10 @@ void chain_join(struct chain *c, int place);
 /* chain_round: what a round of the loop adds to its longest chain when the instructions are
  * executed again and again. What goes through memory is no part of it. */
 struct chain_length chain_round(const struct chain *c);
+
+/* chain_parted: a length whose numbers were rounded one by one, with no more products than its
+ * cycles hold. */
+struct chain_length chain_parted(struct chain_length l);
 
 /* chain_once: the longest chain of one round alone, from its beginning to its last result. */
 struct chain_length chain_once(const struct chain *c);

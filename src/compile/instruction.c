@@ -277,6 +277,24 @@ static void count_whole(struct span m, struct span operands, int width, struct b
     c->whole = product && asm_operand(operands, 1).n == 0 ? 2 : 1;
 }
 
+/* Instructions that the units for floating-point numbers execute: one kind adds, compares and
+ * converts, the other one multiplies. Divisions and roots have a unit of their own. A conversion of
+ * a whole number goes through two units, as it has to be brought from a general register (Fog,
+ * "Instruction tables": half as many of them a cycle as additions). */
+static void count_units(struct span m, struct block_counts *c)
+{
+    static const char *const sums[] = {"add",  "sub",   "min",  "max",  "cmp",
+                                       "comi", "ucomi", "hadd", "hsub", NULL};
+    static const char *const products[] = {"mul", "fm", "fnm", "dp", NULL};
+    struct span stem;
+    if (span_starts(m, "cvt")) c->add = span_starts(m, "cvtsi2") ? 2 : 1;
+    if (float_lanes(m, SCALAR_LANE, &stem) == 0) return;
+    for (int i = 0; sums[i] != NULL; i++)
+        if (span_starts(m, sums[i])) c->add = 1;
+    for (int i = 0; products[i] != NULL; i++)
+        if (span_starts(m, products[i])) c->multiply = 1;
+}
+
 /* Work by class of one instruction. Wide vector registers count as one instruction a lane of 8
  * bytes, so that the count does not depend on how wide the vectors of this computer are. */
 enum flow instruction_read(struct span m, struct span operands, bool frame,
@@ -295,7 +313,10 @@ enum flow instruction_read(struct span m, struct span operands, bool frame,
         count_float(m, width, &c);
         count_x87_and_integer(m, &c);
         count_memory(m, operands, width, frame, &c);
-        if (width > 0) count_vector_load(m, operands, &c);
+        if (width > 0) {
+            count_vector_load(m, operands, &c);
+            count_units(unveiled, &c);
+        }
         count_whole(m, operands, width, &c);
     }
     *counts = c;

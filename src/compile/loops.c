@@ -21,6 +21,24 @@ static void *grown(struct arena *a, void *old, int n, int *most, size_t size)
     return more;
 }
 
+/* Chains do not add up: a round has one of its own. */
+void code_add_counts(struct block_counts *sum, const struct block_counts *c)
+{
+    sum->instruction += c->instruction;
+    sum->flop += c->flop;
+    sum->div += c->div;
+    sum->sqrt += c->sqrt;
+    sum->trig += c->trig;
+    sum->call += c->call;
+    sum->bytes += c->bytes;
+    sum->issue += c->issue;
+    sum->load += c->load;
+    sum->whole += c->whole;
+    sum->add += c->add;
+    sum->multiply += c->multiply;
+    sum->blocks += c->blocks;
+}
+
 /* Registers and cycles are found once, as a line may be executed in many rounds of several
  * loops. */
 void code_add_line(struct code *c, struct span word, struct span operands)
@@ -59,7 +77,7 @@ static bool falls_through(const struct code *c, int b)
                                               span_is(c->line[k->end - 1].word, "ud2")));
 }
 
-static bool has_label(const struct code_block *b, struct span name)
+bool block_has_label(const struct code_block *b, struct span name)
 {
     for (int i = 0; i < b->nlabel; i++)
         if (b->label[i].n == name.n && memcmp(b->label[i].s, name.s, (size_t)name.n) == 0)
@@ -86,7 +104,7 @@ static bool leads_down(const struct code *c, int h, int b)
         if (falls_through(c, i)) reached[i + 1 - h] = true;
         const struct span to = code_jump(c, i, &always);
         for (int k = i + 1; to.n > 0 && k <= b; k++)
-            if (has_label(&c->block[k], to)) reached[k - h] = true;
+            if (block_has_label(&c->block[k], to)) reached[k - h] = true;
     }
     return reached[b - h];
 }
@@ -98,7 +116,7 @@ static int jump_back(const struct code *c, int b)
     bool always;
     const struct span to = code_jump(c, b, &always);
     for (int h = b; to.n > 0 && h >= 0 && h > b - CHAIN_MOST; h--)
-        if (has_label(&c->block[h], to)) return leads_down(c, h, b) ? h : -1;
+        if (block_has_label(&c->block[h], to)) return leads_down(c, h, b) ? h : -1;
     return -1;
 }
 
@@ -163,7 +181,7 @@ static void leave(struct round *r, int b)
     const struct span to = code_jump(r->code, b, &always);
     /* What leads out of the loop ends it, and what leads back is followed by add_blocks. */
     for (int h = b + 1; to.n > 0 && h <= r->last; h++)
-        if (has_label(&r->code->block[h], to))
+        if (block_has_label(&r->code->block[h], to))
             chain_leave(&r->chain, h - r->first, !falls_through(r->code, b));
 }
 
@@ -177,16 +195,7 @@ static void add_block(struct round *r, int b)
     r->fits = r->fits && r->instruction <= CHAIN_MOST && sum->bytes + c->bytes <= UINT16_MAX &&
               b - r->first < CHAIN_PLACES && !leads_away(r->code, b);
     if (!r->fits) return;
-    sum->instruction += c->instruction;
-    sum->flop += c->flop;
-    sum->div += c->div;
-    sum->sqrt += c->sqrt;
-    sum->trig += c->trig;
-    sum->bytes += c->bytes;
-    sum->issue += c->issue;
-    sum->load += c->load;
-    sum->whole += c->whole;
-    sum->blocks += c->blocks;
+    code_add_counts(sum, c);
     chain_join(&r->chain, b - r->first);
     for (int i = k->first; i < k->end; i++) chain_add(&r->chain, r->code->line[i].step);
     leave(r, b);
@@ -218,6 +227,9 @@ static bool crossed(const struct loops *l, const struct code_loop *x)
     return false;
 }
 
+/* a n / whole, to the nearest. */
+static int part_of(int a, long n, long whole) { return (int)((a * n + whole / 2) / whole); }
+
 /* What is added to the chain of a round because the processor does not look ahead without limit. A
  * round of I instructions takes L from its beginning to its last result. Its first instruction is
  * taken in when the one AHEAD before it is done; so 1 + AHEAD / I rounds are on their way at a
@@ -226,8 +238,11 @@ static struct chain_length longest_chain(const struct round *r)
 {
     const struct chain_length carried = chain_round(&r->chain), all = chain_once(&r->chain);
     const long n = r->instruction, whole = n + AHEAD;
-    const struct chain_length held = {(int)((all.flop * n + whole / 2) / whole),
-                                      (int)((all.cycles * n + whole / 2) / whole)};
+    const struct chain_length held =
+        chain_parted((struct chain_length){.flop = part_of(all.flop, n, whole),
+                                           .cycles = part_of(all.cycles, n, whole),
+                                           .late = part_of(all.late, n, whole),
+                                           .product = part_of(all.product, n, whole)});
     const int by_carried = CHAIN_ADDITION * carried.flop + carried.cycles,
               by_held = CHAIN_ADDITION * held.flop + held.cycles;
     return by_held > by_carried ? held : carried;
@@ -248,6 +263,8 @@ static void set_chain(struct block_counts *c, struct chain_length length)
 {
     c->chain_flop = (uint16_t)length.flop;
     c->chain_cycle = (uint16_t)length.cycles;
+    c->chain_late = (uint16_t)length.late;
+    c->chain_product = (uint16_t)length.product;
 }
 
 /* --- the table -------------------------------------------------------------------------------- */
@@ -255,14 +272,19 @@ static void set_chain(struct block_counts *c, struct chain_length length)
 /* The words of an entry behind the first. */
 static void write_counts(struct text *table, const struct block_counts *c, enum block_kind kind)
 {
-    text_add(table, "\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n", c->instruction, c->flop,
-             c->div, c->sqrt, c->trig, c->call, c->bytes, c->issue, c->load, c->whole,
-             c->chain_flop, c->chain_cycle, c->blocks, kind);
+    text_add(table, "\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n",
+             c->instruction, c->flop, c->div, c->sqrt, c->trig, c->call, c->bytes, c->issue,
+             c->load, c->whole, c->add, c->multiply, c->chain_flop, c->chain_cycle, c->chain_late,
+             c->chain_product, c->blocks, kind);
 }
 
 static void write_block(const struct code *c, int b, struct text *table)
 {
-    text_add(table, "\t.long .Lmimdsim%d-4-.\n", c->block[b].number);
+    const int number = c->block[b].number;
+    text_add(table, "\t.long .Lmimdsim%d-4-.,", number);
+    if (c->block[b].repeats)
+        text_add(table, ".Lmimdsim_t%d-.Lmimdsim%d+%d\n", number, number, BLOCK_ADD_BYTES);
+    else text_add(table, "0\n");
     write_counts(table, &c->block[b].counts, BLOCK_ADD);
 }
 
@@ -290,7 +312,7 @@ void loops_write(struct code *c, struct text *table)
         if (x != NULL && x->last > b && take_round(r, c, &l, x)) {
             last = x->last;
             set_chain(&r->counts, longest_chain(r));
-            text_add(table, "\t.long %d\n", last - b + 1);
+            text_add(table, "\t.long %d,0\n", last - b + 1);
             write_counts(table, &r->counts, BLOCK_LOOP);
         }
         for (; b < last; b++) write_block(c, b, table);

@@ -31,6 +31,7 @@ struct code_block {
     struct block_counts counts;
     struct span label[MOST_LABELS]; /* (nlabel) where it begins */
     int nlabel;
+    bool repeats;   /* it leads back to itself, and a label .Lmimdsim_tNUMBER stands behind it */
     int first, end; /* lines [first, end) */
 };
 
@@ -42,10 +43,16 @@ struct code {
     int nline, most_lines, nblock, most_blocks;
 };
 
+/* code_add_counts: `c` more, by class, but for chains. */
+void code_add_counts(struct block_counts *sum, const struct block_counts *c);
+
 /* code_add_line: one more instruction. code_add_block: a block of the lines since the last one; its
  * `first` and `end` are set here. */
 void code_add_line(struct code *c, struct span word, struct span operands);
 void code_add_block(struct code *c, struct code_block b);
+
+/* block_has_label: whether a jump to `name` leads to the block. */
+bool block_has_label(const struct code_block *b, struct span name);
 
 /* code_jump: the label that the last instruction of block `b` jumps to, empty (n = 0): none that is
  * known. *always tells whether it does so without a condition. */

@@ -20,9 +20,15 @@ struct block_table {
     uint64_t address; /* of entry[0] in the file */
 };
 
+/* block_fetches: in how many pieces, one after the other, a processor fetches a loop of
+ * `instructions` that lie in `length` > 0 bytes from `address` on. */
+unsigned block_fetches(uint64_t address, uint32_t length, unsigned instructions);
+
 /* block_cost_ps: cost of a block that stands alone on a node [ps], times `factor`, to the nearest
- * picosecond: the slowest of the finer bounds where the node has them, else node_cost_code_ps. */
-int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts, double factor);
+ * picosecond: the slowest of the finer bounds where the node has them, else node_cost_code_ps.
+ * `fetches`: of block_fetches; 0 where the block is no loop by itself. */
+int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts,
+                      unsigned fetches, double factor);
 
 /* block_costs_patch: write the cost of every block of `table` into the code of the image. Where the
  * node has a price of loads, blocks of a loop with an entry of its own (BLOCK_LOOP) overlap: each

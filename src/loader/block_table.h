@@ -24,15 +24,20 @@
 
 #include <stdint.h>
 
+#include "machine/node_cost.h"
+
 #define BLOCK_TABLE_SECTION "mimdsim_blocks"
 #define BLOCK_NOTE_SECTION ".note.mimdsim"
 #define BLOCK_NOTE_NAME "mimdsim"
 
-enum { BLOCK_TABLE_ABI = 3, BLOCK_NOTE_OBJECT = 1 };
+enum { BLOCK_TABLE_ABI = 4, BLOCK_NOTE_OBJECT = 1 };
+
+/* Nominal cycles of a product in a chain (machine/node_cost.h). */
+enum { BLOCK_PRODUCT_CYCLES = CODE_PRODUCT_CYCLES };
 
 /* The bytes in front of the immediate. */
 #define BLOCK_ADD_OPCODE "\x4d\x8d\xbf"
-enum { BLOCK_ADD_OPCODE_BYTES = 3 };
+enum { BLOCK_ADD_OPCODE_BYTES = 3, BLOCK_ADD_BYTES = 7 };
 
 /* What one execution of a block does, in the classes of base/work.h and more. The filter
  * starts a new block before a count would overflow. */
@@ -51,27 +56,34 @@ struct block_counts {
     uint16_t load;  /* loads of vector registers, constants and the stack frame's, too */
     uint16_t whole; /* instructions that compute with whole numbers; a product of two words is
                        two */
-    uint16_t chain_flop;  /* of a loop that is one block: its longest chain (compile/chain.h), in
-                             floating-point additions */
-    uint16_t chain_cycle; /* and in nominal cycles of other instructions */
-    uint16_t blocks;      /* blocks that are entered: 1, in a round of a loop more, of a rate 0 */
+    uint16_t add; /* floating-point additions, comparisons and conversions, each once, however wide;
+                     a conversion of a whole number is two */
+    uint16_t multiply;      /* floating-point products, likewise, also fused ones */
+    uint16_t chain_flop;    /* of a loop that is one block: its longest chain (compile/chain.h), in
+                               floating-point additions */
+    uint16_t chain_cycle;   /* and in nominal cycles of other instructions */
+    uint16_t chain_late;    /* of its additions, those that wait for something else than one */
+    uint16_t chain_product; /* products, whose BLOCK_PRODUCT_CYCLES are in its cycles */
+    uint16_t blocks;        /* blocks that are entered: 1, in a round of a loop more, of a rate 0 */
 };
 
 struct block_entry {
     int32_t immediate;          /* from this member's address to IMM32 [B]; BLOCK_LOOP: how many of
                                    the entries that follow are blocks of the loop */
+    uint32_t length;            /* of a block that is a loop by itself, with its counter [B], of
+                                   others 0 */
     struct block_counts counts; /* of one execution */
     uint16_t kind;              /* enum block_kind */
 };
 
 enum block_kind {
-    BLOCK_ADD, /* IMM32 of the lea above */
+    BLOCK_ADD,  /* IMM32 of the lea above */
     BLOCK_RATE, /* a 32-bit word in data or code that becomes the cost of the counts: for code that
                    multiplies it */
     BLOCK_LOOP  /* no word: what a round of the loop does whose blocks follow (compile/loops.h) */
 };
 
-_Static_assert(sizeof(struct block_entry) == 32,
-               "entries are written by the assembler as one long and fourteen words");
+_Static_assert(sizeof(struct block_entry) == 44,
+               "entries are written by the assembler as two longs and eighteen words");
 
 #endif

@@ -55,11 +55,12 @@ static bool is_noted(const struct missing *m, const char *name)
     return false;
 }
 
-/* Once each, as far as the message has room. */
+/* Once each, as far as the message has room. Of a damaged file it may have no name. */
 static void note_missing(struct missing *m, const char *name)
 {
     size_t used = strlen(m->text);
     m->n++;
+    if (name[0] == '\0') name = "(without a name)";
     if (is_noted(m, name) || used + strlen(name) + 3 > sizeof m->text) return;
     snprintf(m->text + used, sizeof m->text - used, "%s%s", used ? ", " : "", name);
 }

@@ -26,6 +26,12 @@ static double nearest_ps(const struct node_spec *s)
     return s->level[i].bandwidth > 0 ? 1e12 / s->level[i].bandwidth : 0;
 }
 
+/* How much longer one price is than another; one of 0 is not known, and taken to be equal. */
+static double longer_ps(double cycles, double than, double clock)
+{
+    return cycles > 0 ? cycles_ps(cycles - than, clock) : 0;
+}
+
 /* Picoseconds for one operation of each class of base/work.h, as double: a sum is rounded to whole
  * picoseconds once, by node_cost_ps. A rate of 0 means: free. */
 struct node_cost node_cost_make(const struct node_spec *s)
@@ -47,5 +53,11 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .step = cycles_ps(s->code.step, s->clock),
         .load = cycles_ps(s->code.load, s->clock),
         .whole = cycles_ps(s->code.whole, s->clock),
+        .add = cycles_ps(s->code.add, s->clock),
+        .multiply = cycles_ps(s->code.multiply, s->clock),
+        .fetch = cycles_ps(s->code.fetch, s->clock),
+        .late = longer_ps(s->code.add_latency, s->code.chain, s->clock),
+        .product =
+            longer_ps(s->code.multiply_latency, CODE_PRODUCT_CYCLES * s->code.step, s->clock),
     };
 }

@@ -17,9 +17,16 @@ struct node_cost {
     bool roofline;      /* `byte` does not count, `moved` does */
     /* The same, finer; issue 0: not known. */
     double issue, code_div, code_root, chain, step;
-    double load;  /* 0: not known, and each block of a loop stands alone */
+    double load; /* 0: not known, and each block of a loop stands alone */
     double whole;
+    double add, multiply; /* where nothing waits for them */
+    double fetch;
+    double late, product; /* how much longer than c->chain, and than CODE_PRODUCT_CYCLES steps, an
+                             addition that waits for no addition and a product of a chain take */
 };
+
+/* Nominal cycles that a product counts with in a chain. */
+enum { CODE_PRODUCT_CYCLES = 4 };
 
 /* node_cost_make: the costs of `s`; with the roofline model those of data in the first cache
  * (node_use.h: of any others). */
@@ -82,21 +89,28 @@ static inline double node_cost_code_ps(const struct node_cost *c, const struct w
 }
 
 /* What a piece of code does beside its work: blocks entered, instructions, each once, loads of
- * vector registers, instructions that compute with whole numbers, and the longest chain of a loop:
- * additions, and nominal cycles of other instructions. */
+ * vector registers, instructions that compute with whole numbers, those that add and multiply
+ * floating-point numbers, and the longest chain of a loop: additions, `chain_late` of which wait
+ * for no addition, and nominal cycles of other instructions, among them `chain_product` products.
+ */
 struct code_work {
-    unsigned blocks, issue, load, whole, chain_flop, chain_cycle;
+    unsigned blocks, issue, load, whole, add, multiply;
+    unsigned chain_flop, chain_cycle, chain_late, chain_product;
+    unsigned fetch; /* pieces of code that are fetched one after the other in a round of a loop */
 };
 
 /* What a processor does side by side, so that the slowest of them is what a piece of code takes. */
 enum code_bound {
-    BOUND_CHAIN,   /* what a round of a loop waits for of the round before */
-    BOUND_ISSUE,   /* instructions, one after the other; those of elementary functions, too */
-    BOUND_DIVIDER, /* divisions and square roots */
-    BOUND_MEMORY,  /* bytes */
-    BOUND_COUNTER, /* the counter in each block waits for that of the block before */
-    BOUND_LOAD,    /* loads of vector registers */
-    BOUND_WHOLE,   /* computing with whole numbers, which the counter does, too */
+    BOUND_CHAIN,    /* what a round of a loop waits for of the round before */
+    BOUND_ISSUE,    /* instructions, one after the other; those of elementary functions, too */
+    BOUND_DIVIDER,  /* divisions and square roots */
+    BOUND_MEMORY,   /* bytes */
+    BOUND_COUNTER,  /* the counter in each block waits for that of the block before */
+    BOUND_LOAD,     /* loads of vector registers */
+    BOUND_WHOLE,    /* computing with whole numbers, which the counter does, too */
+    BOUND_FETCH,    /* where the code of a loop lies */
+    BOUND_ADD,      /* the units that add floating-point numbers */
+    BOUND_MULTIPLY, /* and those that multiply them */
     CODE_BOUNDS
 };
 
@@ -109,7 +123,8 @@ static inline double node_cost_bound_ps(const struct node_cost *c, const struct 
     const unsigned counters = c->load > 0 ? code->blocks : 0;
     switch (bound) {
     case BOUND_CHAIN:
-        return code->chain_flop * c->chain + code->chain_cycle * c->step;
+        return code->chain_flop * c->chain + code->chain_cycle * c->step +
+               code->chain_late * c->late + code->chain_product * c->product;
     case BOUND_ISSUE:
         return (code->issue + counters) * c->issue + (double)w->trig * c->trig;
     case BOUND_DIVIDER:
@@ -120,6 +135,12 @@ static inline double node_cost_bound_ps(const struct node_cost *c, const struct 
         return code->blocks * c->step;
     case BOUND_LOAD:
         return code->load * c->load;
+    case BOUND_FETCH:
+        return code->fetch * c->fetch;
+    case BOUND_ADD:
+        return code->add * c->add;
+    case BOUND_MULTIPLY:
+        return code->multiply * c->multiply;
     default:
         return (code->whole + code->blocks) * c->whole;
     }

@@ -6,7 +6,7 @@
 #include "base/err.h"
 #include "plan/plan.h"
 
-enum { CODE_RATES_MOST = 24, CODE_PRICES = 7 };
+enum { CODE_RATES_MOST = 24, CODE_PRICES = 12 };
 
 /* One loop. */
 struct code_sample {
@@ -16,9 +16,9 @@ struct code_sample {
 };
 
 /* Prices in cycles of the processor's clock, in the order of names: node.code.issue, div, root,
- * chain, step, load, whole. */
+ * chain, step, load, whole, add, multiply, fetch, add_latency, multiply_latency. */
 struct code_rates {
-    double price[CODE_PRICES]; /* [cycles] */
+    double price[CODE_PRICES];        /* [cycles] */
     double residual, median_residual; /* relative: the largest, the median */
     int n;
     struct code_sample sample[CODE_RATES_MOST]; /* (n) */

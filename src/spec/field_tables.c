@@ -28,11 +28,12 @@ void run_spec_defaults(struct run_spec *r, struct arena *a)
         field_defaults(tables[i], (char *)r + tables[i]->offset, a);
 }
 
-/* Tables have some tens of rows: a search costs less than an index to be kept. */
+/* Tables have some tens of rows: a search costs less than an index to be kept. Most rows are passed
+ * by their first letter. */
 int field_find(const struct field_table *t, const char *key)
 {
     for (int i = 0; i < t->nfield; i++)
-        if (strcmp(t->field[i].key, key) == 0) return i;
+        if (t->field[i].key[0] == key[0] && strcmp(t->field[i].key, key) == 0) return i;
     return -1;
 }
 

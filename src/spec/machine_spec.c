@@ -59,10 +59,11 @@ static const char *const node_models[] = {"rates", "roofline", NULL};
     .fallback = "0 B"
 #define LEVEL_COUNT(name) .kind = FIELD_INT, LEVEL(name, processors), .max = 1 << 20
 
-/* A price of compiled code; 0 is none. */
+/* A price of compiled code; 0 is none. Finer ones act with node.code.issue alone. */
 #define CODE_PRICE(name)                                                                           \
     .key = "node.code." #name, .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.code.name),        \
     .min = 0, .max = 1e6, .fallback = "0 cycles"
+#define FINER(name, text) {CODE_PRICE(name), .idle = machine_idle_without_code, .doc = text}
 
 /* A price or a power, 0 where the file states none. */
 #define PRICE(member)                                                                              \
@@ -188,18 +189,17 @@ static const struct field fields[] = {
     {CODE_PRICE(issue),
      .doc = "programs made by mimdsim cc, finer: one instruction that waits for nothing, however "
             "wide; 0: node.instruction and node.flop_rate hold"},
-    {CODE_PRICE(div), .idle = machine_idle_without_code,
-     .doc = "a division where none waits for the one before; 0: node.div"},
-    {CODE_PRICE(root), .idle = machine_idle_without_code, .doc = "a square root; 0: node.sqrt"},
-    {CODE_PRICE(chain), .idle = machine_idle_without_code,
-     .doc = "a floating-point addition that waits for the one before it through a loop"},
-    {CODE_PRICE(step), .idle = machine_idle_without_code,
-     .doc = "a nominal cycle of the other instructions of such a chain (docs/compiler.md)"},
-    {CODE_PRICE(load), .idle = machine_idle_without_code,
-     .doc = "a load of a floating-point number or a vector; where it is given, the blocks of a "
-            "loop overlap (docs/compiler.md)"},
-    {CODE_PRICE(whole), .idle = machine_idle_without_code,
-     .doc = "an instruction that computes with whole numbers or addresses"},
+    FINER(div, "a division where none waits for the one before; 0: node.div"),
+    FINER(root, "a square root; 0: node.sqrt"),
+    FINER(chain, "a floating-point addition that waits for the one before it through a loop"),
+    FINER(step, "a nominal cycle of the other instructions of such a chain (docs/compiler.md)"),
+    FINER(load, "a load of a floating-point number or a vector; with it blocks of a loop overlap"),
+    FINER(whole, "an instruction that computes with whole numbers or addresses"),
+    FINER(add, "a floating-point addition, comparison or conversion where none waits for another"),
+    FINER(multiply, "a floating-point product, likewise"),
+    FINER(fetch, "a piece of a loop's code that has to be fetched (docs/compiler.md)"),
+    FINER(add_latency, "a chain's addition that waits for something else; 0: node.code.chain"),
+    FINER(multiply_latency, "a floating-point product in a chain; 0: four of node.code.step"),
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
      .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},

@@ -44,6 +44,7 @@ struct topology_spec {
     int processors_per_node;        /* >= 1 */
     enum tie_rule tie;
     enum dragonfly_routing routing;
+    bool absolute;                  /* dragonfly: global links numbered by the group they lead to */
     bool xpress;                    /* Origin: further links on the routers' spare ports */
     int nbundle;                    /* entries of bundle, 0: one cable everywhere */
     int *bundle;    /* (nbundle) parallel cables, borrowed. hyperx: by dimension; folded-clos: from

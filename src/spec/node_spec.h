@@ -44,6 +44,11 @@ struct node_spec {
         double load;  /* one load of a vector register, 0: loads and loops have no times of their
                          own */
         double whole; /* one instruction that computes with whole numbers */
+        double add;   /* one floating-point addition that waits for nothing, 0: no bound */
+        double multiply;         /* one product, likewise */
+        double fetch; /* one piece of a loop's code that is fetched, 0: no bound */
+        double add_latency;      /* addition that waits for something else than one, 0: chain */
+        double multiply_latency; /* product that waits for what comes before, 0: 4 steps */
     } code;           /* programs compiled by `mimdsim cc`, finer [cycles] (node_cost.h) */
     double call_time;          /* overhead of one small operator call [s] */
     double copy_bandwidth;     /* memory copies [B/s] */

@@ -38,9 +38,11 @@ static void filters_to(const char *in, const char *expected)
 #define ADD(n) "\t{disp32} leaq 0(%r15), %r15\n.Lmimdsim" n ":\n"
 #define TABLE(first)                                                                               \
     "\t.pushsection mimdsim_blocks,\"ao?\",@progbits,.Lmimdsim" first "\n\t.balign 4\n"
-/* The last six are those of the finer prices: instructions, each once, loads, whole numbers, a
- * chain of two, blocks. */
-#define ENTRY(n, counts) "\t.long .Lmimdsim" n "-4-.\n\t.value " counts ",0\n"
+/* The last ten are those of the finer prices: instructions, each once, loads, whole numbers,
+ * additions, products, a chain of four, blocks. */
+#define ENTRY(n, counts) "\t.long .Lmimdsim" n "-4-.,0\n\t.value " counts ",0\n"
+#define LOOP(n, counts)                                                                            \
+    "\t.long .Lmimdsim" n "-4-.,.Lmimdsim_t" n "-.Lmimdsim" n "+7\n\t.value " counts ",0\n"
 #define END "\t.popsection\n"
 
 static void blocks_begin_at_labels_and_behind_branches_and_calls(void **state)
@@ -74,10 +76,10 @@ static void blocks_begin_at_labels_and_behind_branches_and_calls(void **state)
                                    ".L3:\n" ADD("4") "\tmovl\t$0, (%rdi)\n"
                                                      "\tret\n"
                                                      "\t.cfi_endproc\n" TABLE("1")
-        ENTRY("1", "2,1,0,0,0,1,0,2,0,0,0,0,1")
-        ENTRY("2", "2,0,0,0,0,0,0,2,0,1,0,0,1")
-        ENTRY("3", "1,0,0,0,0,0,0,1,0,1,0,0,1")
-        ENTRY("4", "2,0,0,0,0,0,4,2,0,0,0,0,1")
+        ENTRY("1", "2,1,0,0,0,1,0,2,0,0,0,1,0,0,0,0,1")
+        ENTRY("2", "2,0,0,0,0,0,0,2,0,1,0,0,0,0,0,0,1")
+        ENTRY("3", "1,0,0,0,0,0,0,1,0,1,0,0,0,0,0,0,1")
+        ENTRY("4", "2,0,0,0,0,0,4,2,0,0,0,0,0,0,0,0,1")
         END
         "\t.section\t.debug_info,\"\",@progbits\n"
         "\t.quad\t.LVL7\n");
@@ -109,12 +111,14 @@ static void each_section_has_its_piece_of_the_table(void **state)
                "\t.section\t.text._Z1fv\n"
                "\t.text\nh:\n\tret\n",
                "\t.section\t.text._Z1fv,\"axG\",@progbits,_Z1fv,comdat\n"
-               "f:\n" ADD("1") "\tret\n" TABLE("1") ENTRY("1", "1,0,0,0,0,0,0,1,0,0,0,0,1") END
+               "f:\n" ADD("1") "\tret\n" TABLE("1")
+                   ENTRY("1", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1") END
                "\t.section\t.rodata\n\t.string \"ret\"\n"
                "\t.text\ng:\n" ADD("2") "\tret\n" TABLE("2")
-               ENTRY("2", "1,0,0,0,0,0,0,1,0,0,0,0,1") END
+               ENTRY("2", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1") END
                "\t.section\t.text._Z1fv\n"
-               "\t.text\nh:\n" ADD("3") "\tret\n" TABLE("2") ENTRY("3", "1,0,0,0,0,0,0,1,0,0,0,0,1")
+               "\t.text\nh:\n" ADD("3") "\tret\n" TABLE("2")
+                   ENTRY("3", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
                    END);
 }
 
@@ -128,8 +132,8 @@ static void sequences_of_the_linker_and_first_instructions_stay_whole(void **sta
             "1") "\t.byte\t0x66\n\tleaq\tx@tlsgd(%rip), %rdi\n\t.value\t0x6666\n\trex64\n"
                  "\tcall\t__tls_get_addr@PLT\n" ADD(
                      "2") "\trep stosq\n\tlock; incl (%rax)\n\tret\n" TABLE("1")
-                     ENTRY("1", "3,0,0,0,0,1,0,3,0,1,0,0,1")
-                     ENTRY("2", "3,0,0,0,0,0,8,3,0,2,0,0,1") END);
+                     ENTRY("1", "3,0,0,0,0,1,0,3,0,1,0,0,0,0,0,0,1")
+                     ENTRY("2", "3,0,0,0,0,0,8,3,0,2,0,0,0,0,0,0,1") END);
 }
 
 static void nothing_is_inserted_into_asm_statements(void **state)
@@ -144,8 +148,8 @@ static void nothing_is_inserted_into_asm_statements(void **state)
                  "\t.pushsection .x,\"ax\"\ng:\tret\n\t.popsection\n# 0 \"\" 2\n#NO_APP\n" ADD(
                      "2") "\tincl\t%eax\n"
                           "#APP\n# 4 \"sum.c\" 1\n\tnop\n# 0 \"\" 2\n#NO_APP\n\tret\n" TABLE("1")
-                              ENTRY("1", "2,0,0,0,0,0,0,2,0,1,0,0,1")
-                                  ENTRY("2", "3,0,0,0,0,0,0,3,0,1,0,0,1") END);
+                              ENTRY("1", "2,0,0,0,0,0,0,2,0,1,0,0,0,0,0,0,1")
+                                  ENTRY("2", "3,0,0,0,0,0,0,3,0,1,0,0,0,0,0,0,1") END);
     /* at file scope: another section, data, functions */
     static const char outside[] =
         "\t.data\nx:\t.long 1\n#APP\n\t.text\ng:\tret\n\t.data\n#NO_APP\n\t.long 2\n";
@@ -163,10 +167,10 @@ static void bytes_that_functions_move_are_counted_by_others(void **state)
                ADD("3") "\tcall\tmemcpyx\n"
                ADD("4") "\tjmp\tmimdsim_memmove\n"
                TABLE("1")
-               ENTRY("1", "1,0,0,0,0,1,0,1,0,0,0,0,1")
-               ENTRY("2", "1,0,0,0,0,1,0,1,0,0,0,0,1")
-               ENTRY("3", "1,0,0,0,0,1,0,1,0,0,0,0,1")
-               ENTRY("4", "1,0,0,0,0,0,0,1,0,0,0,0,1")
+               ENTRY("1", "1,0,0,0,0,1,0,1,0,0,0,0,0,0,0,0,1")
+               ENTRY("2", "1,0,0,0,0,1,0,1,0,0,0,0,0,0,0,0,1")
+               ENTRY("3", "1,0,0,0,0,1,0,1,0,0,0,0,0,0,0,0,1")
+               ENTRY("4", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
                END);
 }
 
@@ -240,7 +244,8 @@ static void functions_that_others_may_call_get_an_entry(void **state)
     }
 }
 
-/* A block that jumps to its own beginning has the length of its chain; others have none. Two blocks
+/* A block that jumps to its own beginning has the length of its chain and of its code; others have
+ * none. Two blocks
  * that are a loop have an entry for both. */
 static void a_loop_has_its_chain(void **state)
 {
@@ -252,12 +257,12 @@ static void a_loop_has_its_chain(void **state)
         "f:\n" ADD("1") "\txorl\t%eax, %eax\n.L3:\n.L4:\n" ADD(
             "2") "\tmovsd\t(%rdi,%rax,8), %xmm1\n\tmulsd\t%xmm2, %xmm1\n"
                  "\taddsd\t%xmm1, %xmm0\n\taddq\t$1, %rax\n\tcmpq\t%rdx, %rax\n"
-                 "\tjne\t.L3\n" ADD("3") "\tjne\t.L4\n" ADD("4") "\tret\n" TABLE("1")
-                     ENTRY("1", "1,0,0,0,0,0,0,1,0,1,0,0,1")
-                     "\t.long 2\n\t.value 7,2,0,0,0,0,8,7,1,2,1,0,2,2\n"
-                     ENTRY("2", "6,2,0,0,0,0,8,6,1,2,1,0,1")
-                     ENTRY("3", "1,0,0,0,0,0,0,1,0,0,0,0,1")
-                     ENTRY("4", "1,0,0,0,0,0,0,1,0,0,0,0,1")
+                 "\tjne\t.L3\n.Lmimdsim_t2:\n" ADD("3") "\tjne\t.L4\n" ADD("4") "\tret\n" TABLE("1")
+                     ENTRY("1", "1,0,0,0,0,0,0,1,0,1,0,0,0,0,0,0,1")
+                     "\t.long 2,0\n\t.value 7,2,0,0,0,0,8,7,1,2,1,1,1,0,0,0,2,2\n"
+                     LOOP("2", "6,2,0,0,0,0,8,6,1,2,1,1,1,0,0,0,1")
+                     ENTRY("3", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
+                     ENTRY("4", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
                              END);
 }
 

@@ -61,17 +61,54 @@ static const struct loop loops[] = {
     {"nop; ", 0, 0},
 };
 
+static struct chain_length round_of(const char *text)
+{
+    struct chain c = {0};
+    const char *end = text + strlen(text);
+    for (struct asm_statement s; (s = asm_next(&text, end)).kind == ASM_INSTRUCTION;)
+        chain_add(&c, chain_step_of(s.word, s.operands));
+    return chain_round(&c);
+}
+
 static void chains_of_loops(void **state)
 {
     (void)state;
     for (unsigned i = 0; i < sizeof loops / sizeof loops[0]; i++) {
-        struct chain c = {0};
-        const char *at = loops[i].text, *end = at + strlen(at);
-        for (struct asm_statement s; (s = asm_next(&at, end)).kind == ASM_INSTRUCTION;)
-            chain_add(&c, chain_step_of(s.word, s.operands));
-        const struct chain_length round = chain_round(&c);
+        const struct chain_length round = round_of(loops[i].text);
         if (round.flop != loops[i].flop || round.cycles != loops[i].cycles)
             fail_msg("%s: %d operations and %d cycles", loops[i].text, round.flop, round.cycles);
+    }
+}
+
+/* Which additions wait for something else than an addition, and how many products there are. */
+static void additions_and_products_of_a_chain(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        struct chain_length round;
+    } cases[] = {
+        {"addsd %xmm1, %xmm0; mulsd %xmm2, %xmm3", {.flop = 0, .cycles = 4, .product = 1}},
+        {"mulsd %xmm2, %xmm0; addsd %xmm3, %xmm0", {1, 4, 1, 1}},
+        {"addsd %xmm2, %xmm0; addsd %xmm3, %xmm0", {2, 0, 0, 0}},
+        {"mulsd %xmm2, %xmm0; vmulpd %ymm3, %ymm0, %ymm0", {0, 8, 0, 2}},
+        {"vfmadd213sd %xmm3, %xmm2, %xmm0", {0, 4, 0, 0}},
+        {"addsd %xmm1, %xmm0; movq %xmm0, %rax; addsd (%rdi,%rax,8), %xmm0", {2, 4, 1, 0}},
+        /* through moves among registers */
+        {"addsd %xmm2, %xmm0; mulsd %xmm3, %xmm0; subsd %xmm4, %xmm0; movapd %xmm0, %xmm6; "
+         "maxsd %xmm5, %xmm6; movapd %xmm6, %xmm0",
+         {3, 4, 1, 1}},
+        {"imulq %rdx, %rax; cvtsi2sdq %rax, %xmm0; addsd %xmm0, %xmm0; cvttsd2siq %xmm0, %rax",
+         {1, 11, 1, 0}},
+        /* every second round: no more products than the cycles are of */
+        {"movapd %xmm0, %xmm1; mulsd %xmm4, %xmm2; movapd %xmm2, %xmm0; movapd %xmm1, %xmm2",
+         {0, 2, 0, 0}},
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct chain_length *x = &cases[i].round, l = round_of(cases[i].text);
+        if (memcmp(x, &l, sizeof l) != 0)
+            fail_msg("%s: %d additions, %d late, %d cycles, %d products", cases[i].text, l.flop,
+                     l.late, l.cycles, l.product);
     }
 }
 
@@ -90,6 +127,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chains_of_loops),
+        cmocka_unit_test(additions_and_products_of_a_chain),
         cmocka_unit_test(too_many_instructions_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

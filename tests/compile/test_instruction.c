@@ -118,7 +118,7 @@ static void each_instruction_counts_what_it_does(void **state)
         const enum flow flow = instruction_read(s.word, s.operands, x->frame, &c);
         /* However wide, it is issued once. */
         assert_int_equal(c.issue, 1);
-        c.issue = c.load = c.whole = 0;
+        c.issue = c.load = c.whole = c.add = c.multiply = 0;
         if (flow != x->flow || memcmp(&c, &x->c, sizeof c) != 0)
             fail_msg("%s: flow %d, counts %u %u %u %u %u %u %u", x->text, flow, c.instruction,
                      c.flop, c.div, c.sqrt, c.trig, c.call, c.bytes);
@@ -169,6 +169,48 @@ static void units_of_a_processor(void **state)
     }
 }
 
+/* Units for floating-point numbers: those that add, and those that multiply. */
+static void units_for_floating_point_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int add, multiply;
+    } cases[] = {
+        {"addsd %xmm0, %xmm1", 1, 0},
+        {"vsubps %ymm0, %ymm1, %ymm2", 1, 0},
+        {"maxsd (%rax), %xmm1", 1, 0},
+        {"cmpltsd %xmm0, %xmm1", 1, 0},
+        {"ucomisd %xmm0, %xmm1", 1, 0},
+        {"vhaddpd %xmm0, %xmm1, %xmm2", 1, 0},
+        {"cvtss2sd %xmm0, %xmm1", 1, 0},
+        {"cvttsd2siq %xmm0, %rcx", 1, 0},
+        {"cvtsi2sdq %rdx, %xmm1", 2, 0},
+        {"vcvtsi2sdl (%rdx), %xmm1, %xmm1", 2, 0},
+        {"mulsd %xmm0, %xmm1", 0, 1},
+        {"vmulpd %zmm0, %zmm1, %zmm2", 0, 1},
+        {"vfmadd231sd %xmm0, %xmm1, %xmm2", 0, 1},
+        {"vfnmadd132ps %xmm0, %xmm1, %xmm2", 0, 1},
+        {"dppd $1, %xmm0, %xmm1", 0, 1},
+        {"divsd %xmm0, %xmm1", 0, 0},
+        {"sqrtsd %xmm0, %xmm1", 0, 0},
+        {"movsd %xmm0, %xmm1", 0, 0},
+        {"andpd %xmm0, %xmm1", 0, 0},
+        {"paddd %xmm0, %xmm1", 0, 0},
+        {"pmulld %xmm0, %xmm1", 0, 0},
+        {"addq %rax, %rdx", 0, 0},
+        {"mulq %rcx", 0, 0},
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *at = cases[i].text;
+        const struct asm_statement s = asm_next(&at, at + strlen(at));
+        struct block_counts c;
+        instruction_read(s.word, s.operands, false, &c);
+        if (c.add != cases[i].add || c.multiply != cases[i].multiply)
+            fail_msg("%s: %u additions, %u products", cases[i].text, c.add, c.multiply);
+    }
+}
+
 static void a_line_falls_into_its_statements(void **state)
 {
     (void)state;
@@ -205,6 +247,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(units_of_a_processor),
+        cmocka_unit_test(units_for_floating_point_numbers),
         cmocka_unit_test(a_line_falls_into_its_statements),
         cmocka_unit_test(each_instruction_counts_what_it_does),
     };

@@ -30,7 +30,9 @@ static int loops_of(const char *body, struct said *said, int most)
     for (char *s = out.s; (s = strstr(s, "\t.long ")) != NULL; s++) {
         struct said x;
         unsigned kind, entries;
-        if (sscanf(s, " .long %u\n .value %*u,%*u,%*u,%*u,%*u,%*u,%*u,%u,%u,%*u,%u,%u,%u,%u",
+        if (sscanf(s,
+                   " .long %u,0\n .value "
+                   "%*u,%*u,%*u,%*u,%*u,%*u,%*u,%u,%u,%*u,%*u,%*u,%u,%u,%*u,%*u,%u,%u",
                    &entries, &x.instructions, &x.loads, &x.flop, &x.cycle, &x.blocks, &kind) != 7)
             continue;
         x.entries = entries;

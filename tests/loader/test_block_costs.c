@@ -36,8 +36,9 @@ static struct block_table image_make(struct image *i, const struct block_counts 
         const int word = code_at[k] + (kind == BLOCK_ADD ? BLOCK_ADD_OPCODE_BYTES : 0);
         if (kind == BLOCK_ADD)
             memcpy(&i->byte[code_at[k]], BLOCK_ADD_OPCODE, BLOCK_ADD_OPCODE_BYTES);
-        entry[k] = (struct block_entry){word - TABLE_AT - k * (int)sizeof *entry, counts[k],
-                                         (uint16_t)kind};
+        entry[k] = (struct block_entry){.immediate = word - TABLE_AT - k * (int)sizeof *entry,
+                                        .counts = counts[k],
+                                        .kind = (uint16_t)kind};
     }
     return (struct block_table){entry, BLOCKS, IMAGE_ADDRESS + TABLE_AT};
 }
@@ -105,8 +106,8 @@ static void the_finer_prices_hold_where_there_are_some(void **state)
         {{.bytes = 0}, 0},
     };
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        assert_int_equal(block_cost_ps(&fine, &cases[i].c, 1), cases[i].ps);
-    assert_int_equal(block_cost_ps(&fine, &cases[1].c, 2), 11000);
+        assert_int_equal(block_cost_ps(&fine, &cases[i].c, 0, 1), cases[i].ps);
+    assert_int_equal(block_cost_ps(&fine, &cases[1].c, 0, 2), 11000);
     /* With a price of loads the counter is an instruction. */
     struct node_cost finer = fine;
     finer.load = 70;
@@ -114,13 +115,72 @@ static void the_finer_prices_hold_where_there_are_some(void **state)
     static const struct block_counts loads = {.issue = 5, .load = 9, .blocks = 1},
                                      whole = {.issue = 5, .whole = 15, .blocks = 1},
                                      counter = {.issue = 5, .blocks = 1};
-    assert_int_equal(block_cost_ps(&finer, &loads, 1), 630);
-    assert_int_equal(block_cost_ps(&finer, &whole, 1), 800);
-    assert_int_equal(block_cost_ps(&finer, &counter, 1), 600);
+    assert_int_equal(block_cost_ps(&finer, &loads, 0, 1), 630);
+    assert_int_equal(block_cost_ps(&finer, &whole, 0, 1), 800);
+    assert_int_equal(block_cost_ps(&finer, &counter, 0, 1), 600);
     /* Without a price of what is issued the others are not looked at. */
     struct node_cost coarse = fine;
     coarse.issue = 0;
-    assert_int_equal(block_cost_ps(&coarse, &cases[0].c, 1), 40000);
+    assert_int_equal(block_cost_ps(&coarse, &cases[0].c, 0, 1), 40000);
+}
+
+/* Floating-point units, pieces of code, and chains whose additions and products differ. */
+static void units_chains_and_code_have_prices(void **state)
+{
+    (void)state;
+    static const struct node_cost c = {.issue = 100,
+                                       .chain = 900,
+                                       .step = 300,
+                                       .add = 400,
+                                       .multiply = 500,
+                                       .fetch = 2000,
+                                       .late = 350,
+                                       .product = -100};
+    static const struct block_counts sums = {.issue = 5, .add = 3, .multiply = 2},
+                                     products = {.issue = 5, .add = 3, .multiply = 3},
+                                     chain = {.chain_flop = 3,
+                                              .chain_cycle = 9,
+                                              .chain_late = 2,
+                                              .chain_product = 2};
+    assert_int_equal(block_cost_ps(&c, &sums, 0, 1), 1200);
+    assert_int_equal(block_cost_ps(&c, &products, 0, 1), 1500);
+    assert_int_equal(block_cost_ps(&c, &products, 1, 1), 2000);
+    assert_int_equal(block_cost_ps(&c, &chain, 0, 1), 5900);
+}
+
+/* By hand, from the rule in block_costs.c: entries of 6 instructions, lines of 64 bytes. */
+static void loops_are_fetched_in_pieces(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t address;
+        uint32_t length;
+        unsigned instructions, pieces;
+    } cases[] = {
+        {0, 20, 6, 1},   {0, 40, 12, 1},         {0, 52, 13, 3},  {0, 60, 20, 4},
+        {32, 64, 12, 1}, {32, 64, 24, 2},        {48, 64, 16, 2}, {0, 75, 15, 4},
+        {0, 128, 26, 5}, {1 << 20, 320, 70, 11}, {63, 1, 1, 1},
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const unsigned n = block_fetches(cases[i].address, cases[i].length, cases[i].instructions);
+        if (n != cases[i].pieces) fail_msg("case %u: %u pieces", i, n);
+    }
+    /* A block's length decides, not its loop's; blocks without one are not fetched. */
+    struct image i;
+    struct err e;
+    err_clear(&e);
+    static const struct block_counts counts[BLOCKS] = {{.issue = 13}, {.issue = 13}, {.issue = 13}};
+    static const struct node_cost c = {.issue = 10, .fetch = 1000};
+    const struct block_table t = image_make(&i, counts);
+    struct block_entry *entry = (struct block_entry *)(void *)&i.byte[TABLE_AT];
+    entry[0].length = 52;
+    assert_true(block_costs_patch(&t, image_at, &i, &c, 1, &e));
+    assert_int_equal(word_at(&i, 3), 3000);
+    assert_int_equal(word_at(&i, 13), 130);
+    /* No instruction is so long. */
+    entry[0].length = 15 * 15 + 1;
+    assert_false(block_costs_patch(&t, image_at, &i, &c, 1, &e));
+    assert_int_equal(e.kind, ERR_DATA);
 }
 
 /* A loop of two blocks and what its entry says of a round of it. */
@@ -167,6 +227,9 @@ static void blocks_of_a_loop_take_the_same_bound(void **state)
     struct block_counts chained = round;
     chained.chain_flop = 20, chained.chain_cycle = 5;
     loop_costs(&chained, &c, 0, 18050);
+    chained.chain_late = 3, chained.chain_product = 1;
+    c.late = 100, c.product = -40;
+    loop_costs(&chained, &c, 0, 18310);
     /* without a price of loads each block stands alone */
     c.load = c.whole = 0;
     loop_costs(&chained, &c, 1000, 400);
@@ -230,6 +293,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_block_gets_its_cost),
         cmocka_unit_test(the_finer_prices_hold_where_there_are_some),
+        cmocka_unit_test(units_chains_and_code_have_prices),
+        cmocka_unit_test(loops_are_fetched_in_pieces),
         cmocka_unit_test(blocks_of_a_loop_take_the_same_bound),
         cmocka_unit_test(a_loop_that_does_not_fit_is_refused),
         cmocka_unit_test(a_table_that_does_not_fit_is_refused),
