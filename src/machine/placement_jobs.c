@@ -51,11 +51,11 @@ static bool refuse_taken(const struct filling *f, int i, int rank, int processor
     const int other = f->owner[processor] - 1, per_node = f->machine->topology.processors_per_node;
     if (f->owner[processor] == BROKEN)
         return err_set(f->err, ERR_CONFIG,
-                       "placement list: processor %d of rank %d hangs on router %d, which "
+                       "placement.list: processor %d of rank %d hangs on router %d, which "
                        "network.failed.routers names",
                        processor, rank, topology_router_of(f->topology, processor / per_node));
     if (other == i)
-        return err_set(f->err, ERR_CONFIG, "placement list: ranks %d and %d on processor %d",
+        return err_set(f->err, ERR_CONFIG, "placement.list: ranks %d and %d on processor %d",
                        f->rank[processor], rank, processor);
     return err_set(f->err, ERR_CONFIG,
                    "jobs '%.31s' and '%.31s' overlap: rank %d of one and rank %d of the other on "
@@ -71,13 +71,13 @@ static bool place_by_list(struct filling *f, int i)
     char name[48];
     whose(job, name, sizeof name);
     if (s->nlist < job->nrank)
-        return err_set(f->err, ERR_CONFIG, "%splacement list names %d processors for %d ranks",
+        return err_set(f->err, ERR_CONFIG, "%splacement.list names %d processors for %d ranks",
                        name, s->nlist, job->nrank);
     for (int r = 0; r < job->nrank; r++) {
         const int processor = s->list[r];
         if (processor < 0 || processor >= f->nprocessor)
             return err_set(f->err, ERR_CONFIG,
-                           "%splacement list: processor %d of rank %d; expected 0 to %lld", name,
+                           "%splacement.list: processor %d of rank %d; expected 0 to %lld", name,
                            processor, r, (long long)f->nprocessor - 1);
         if (f->owner[processor]) return refuse_taken(f, i, r, processor);
         f->rank[processor] = r;

@@ -42,10 +42,10 @@ bool placement_fits(const struct machine_spec *m, struct err *e)
 {
     enum topology_family f = m->topology.family;
     if (m->placement.kind == PLACEMENT_SNAKE && !topology_has(f, TOPOLOGY_GRID))
-        return err_set(e, ERR_CONFIG, "placement snake needs a torus or a mesh, not a %s",
+        return err_set(e, ERR_CONFIG, "placement.kind snake needs a torus or a mesh, not a %s",
                        topology_family_name(f));
     if (m->placement.kind == PLACEMENT_GRAY && !topology_has(f, TOPOLOGY_CUBE))
-        return err_set(e, ERR_CONFIG, "placement gray needs a hypercube, not a %s",
+        return err_set(e, ERR_CONFIG, "placement.kind gray needs a hypercube, not a %s",
                        topology_family_name(f));
     return true;
 }

@@ -50,6 +50,11 @@ struct routing *routing_create(const struct topology *t, enum routing_rule rule,
     return r;
 }
 
+void routing_keep(struct routing *r, struct arena *a)
+{
+    if (r->keep && r->topology->nrouter <= ROUTING_KEEP_MOST) r->keep(r, a);
+}
+
 struct route routing_start(const struct routing *r, int src, int dst, uint64_t choice)
 {
     const struct topology *t = r->topology;

@@ -21,7 +21,7 @@ struct route {
     int via;            /* where its first leg ends: a router, or a node; -1: none */
     int phase;          /* of the rule: legs behind, or the order of dimensions */
     int part;           /* of the rule: class on the ring, or the channel's order */
-    int last;           /* of the rule: dimension and direction of the last link, -1 */
+    int last;           /* of the rule: dimension and direction of the last link, its place, -1 */
     int channel;        /* that it came over, -1: from its node */
     int hops;           /* links behind */
     uint32_t drawn;     /* random numbers drawn from `choice` */
@@ -54,11 +54,13 @@ struct routing {
     int most;     /* ways on at one router */
     int *end;     /* (nlink) the router that a link leads to */
     bool minimal; /* through an empty network it takes as few links as the topology's own routes */
+    bool fixed;   /* through an empty network the way depends on its ends alone */
     bool by_load; /* routes depend on `used` */
     bool at_source; /* by_load only at the first router */
     bool fits;   /* above the escape a channel may be given only to a packet that it can hold whole:
                     one that stands behind another could not turn to the escape */
     void *state; /* of the rule */
+    void (*keep)(struct routing *r, struct arena *a); /* see routing_keep; NULL: nothing */
 };
 
 /* routing_create: rule `rule` on topology t, of which everything works unless the rule is the
@@ -67,6 +69,10 @@ struct routing {
  * not for this family, needs more channels, or something has failed. */
 struct routing *routing_create(const struct topology *t, enum routing_rule rule, int channels,
                                struct arena *a, struct err *e);
+
+/* routing_keep: for many packets: of a small network, work out once and keep in `a` what the rule
+ * asks for at every step. Answers stay the same. */
+void routing_keep(struct routing *r, struct arena *a);
 
 /* routing_start: a packet from node src to node dst; `choice` is its random number. */
 struct route routing_start(const struct routing *r, int src, int dst, uint64_t choice);

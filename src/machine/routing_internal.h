@@ -18,6 +18,8 @@ struct routing_type {
     int (*eject)(const struct routing *r, const struct route *p, int *first);
 };
 
+enum { ROUTING_KEEP_MOST = 256 }; /* routers of a network of which pairs are kept */
+
 /* The rules by file, each list ended by one without `create`. */
 extern const struct routing_type routing_lattice_types[], routing_adaptive_types[],
     routing_leg_types[], routing_tree_types[], routing_dragonfly_types[];

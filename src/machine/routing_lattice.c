@@ -56,11 +56,38 @@ struct lattice *lattice_create(const struct routing *r, struct arena *a)
 
 /* ---- dimension order ---- */
 
+/* Where the next link depends on both ends alone: neither rings nor bundles. */
+static void order_keep(struct routing *r, struct arena *a)
+{
+    struct lattice *g = r->state;
+    const int n = r->topology->nrouter;
+    bool single = !g->wraps && g->degree <= UINT8_MAX;
+    for (int d = 0; d < g->ndim; d++) single = single && g->bundle[d] == 1;
+    for (int descending = 0; single && descending < 2; descending++) {
+        uint8_t *slot = TAKE(a, size_product((size_t)n, (size_t)n), uint8_t);
+        for (int from = 0; from < n; from++)
+            for (int to = 0; to < n; to++) {
+                const int d = lattice_dimension(g, from, to, descending);
+                if (d < 0) continue;
+                const int x = lattice_at(g, from, d), y = lattice_at(g, to, d);
+                slot[from * n + to] = (uint8_t)(g->first[d] + (g->direct ? y : y < x));
+            }
+        g->slot[descending] = slot;
+    }
+}
+
 /* The one way on to router `to` by order of dimensions. On a ring: straight on in the dimension of
  * the last link, else the shorter way, of equals by chance, and its class. */
-static inline void in_order(const struct lattice *g, struct route *p, int to, bool descending,
+static inline void in_order(const struct routing *r, struct route *p, int to, bool descending,
                             struct route_option *o)
 {
+    const struct lattice *g = r->state;
+    if (g->slot[descending]) {
+        const int slot = g->slot[descending][p->router * r->topology->nrouter + to];
+        *o = (struct route_option){
+            .link = g->out[p->router * g->degree + slot], .part = p->part, .last = slot};
+        return;
+    }
     const int d = lattice_dimension(g, p->router, to, descending);
     const int x = lattice_at(g, p->router, d), y = lattice_at(g, to, d);
     int way, part = p->part;
@@ -76,11 +103,11 @@ static inline void in_order(const struct lattice *g, struct route *p, int to, bo
 }
 
 /* The load of its link. */
-static int64_t used_in_order(const struct lattice *g, struct route *p, int to, bool descending,
+static int64_t used_in_order(const struct routing *r, struct route *p, int to, bool descending,
                              const struct routing_view *view)
 {
     struct route_option o;
-    in_order(g, p, to, descending, &o);
+    in_order(r, p, to, descending, &o);
     return routing_used(view, o.link);
 }
 
@@ -88,6 +115,7 @@ static bool order_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->keep = order_keep;
     r->most = 1;
     r->max_hops = g->diameter;
     r->minimal = true;
@@ -101,7 +129,7 @@ static int order_next(const struct routing *r, struct route *p, const struct rou
     const struct lattice *g = r->state;
     (void)view;
     if (p->router == p->target) return 0;
-    in_order(g, p, p->target, false, option);
+    in_order(r, p, p->target, false, option);
     option->count = r->channels;
     if (g->wraps) option->count = routing_half(r, option->part, &option->first);
     return 1;
@@ -113,6 +141,7 @@ static bool either_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->keep = order_keep;
     r->most = 1;
     r->max_hops = g->diameter;
     r->minimal = true;
@@ -125,17 +154,16 @@ static bool either_create(struct routing *r, struct arena *a, struct err *e)
 static int either_next(const struct routing *r, struct route *p, const struct routing_view *view,
                        struct route_option *option)
 {
-    const struct lattice *g = r->state;
     if (p->router == p->target) return 0;
     if (p->channel < 0) {
         int64_t up = 0, down = 0;
         if (r->by_load) {
-            up = used_in_order(g, p, p->target, false, view);
-            down = used_in_order(g, p, p->target, true, view);
+            up = used_in_order(r, p, p->target, false, view);
+            down = used_in_order(r, p, p->target, true, view);
         }
         p->phase = up == down ? !routing_draw(p, 2) : up > down;
     }
-    in_order(g, p, p->target, p->phase, option);
+    in_order(r, p, p->target, p->phase, option);
     option->count = routing_half(r, p->phase, &option->first);
     return 1;
 }
@@ -146,6 +174,7 @@ static bool through_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->keep = order_keep;
     r->most = 1;
     r->max_hops = 2 * g->diameter;
     r->minimal = r->rule == ROUTING_ROMM;
@@ -191,7 +220,7 @@ static int through_next(const struct routing *r, struct route *p, const struct r
         p->last = -1;
     }
     if (p->phase == 1 && p->router == p->target) return 0;
-    in_order(g, p, p->phase ? p->target : p->via, false, option);
+    in_order(r, p, p->phase ? p->target : p->via, false, option);
     option->count = g->wraps ? quarter(r, option->part, p->phase, &option->first)
                              : routing_half(r, p->phase, &option->first);
     return 1;
@@ -202,6 +231,7 @@ static int through_next(const struct routing *r, struct route *p, const struct r
 static bool butterfly_create(struct routing *r, struct arena *a, struct err *e)
 {
     r->state = lattice_create(r, a);
+    r->keep = order_keep;
     r->most = 1;
     r->max_hops = 2 * r->topology->max_hops;
     r->by_load = r->at_source = r->minimal = true;
@@ -217,9 +247,10 @@ static int distance(const struct lattice *g, int from, int to)
 
 /* Once, at the source: minimal if its queue times its links is at most two flits above that of the
  * other way. The intermediate router differs only in dimensions in which the ends differ. */
-static void butterfly_choose(const struct lattice *g, struct route *p,
+static void butterfly_choose(const struct routing *r, struct route *p,
                              const struct routing_view *view)
 {
+    const struct lattice *g = r->state;
     enum { THRESHOLD = 2 };
     int via = 0;
     for (int d = 0; d < g->ndim; d++) {
@@ -229,8 +260,8 @@ static void butterfly_choose(const struct lattice *g, struct route *p,
     }
     p->phase = 1;
     if (via == p->router) return;
-    const int64_t near = used_in_order(g, p, p->target, false, view),
-                  far = used_in_order(g, p, via, false, view);
+    const int64_t near = used_in_order(r, p, p->target, false, view),
+                  far = used_in_order(r, p, via, false, view);
     const int there = distance(g, p->router, via) + distance(g, via, p->target);
     if (distance(g, p->router, p->target) * near <= there * far + THRESHOLD) return;
     p->via = via;
@@ -240,11 +271,10 @@ static void butterfly_choose(const struct lattice *g, struct route *p,
 static int butterfly_next(const struct routing *r, struct route *p, const struct routing_view *view,
                           struct route_option *option)
 {
-    const struct lattice *g = r->state;
-    if (p->channel < 0 && p->router != p->target) butterfly_choose(g, p, view);
+    if (p->channel < 0 && p->router != p->target) butterfly_choose(r, p, view);
     if (p->phase == 0 && p->router == p->via) p->phase = 1;
     if (p->router == p->target && (p->phase == 1 || p->via < 0)) return 0;
-    in_order(g, p, p->phase ? p->target : p->via, false, option);
+    in_order(r, p, p->phase ? p->target : p->via, false, option);
     option->count = routing_half(r, p->phase, &option->first);
     return 1;
 }

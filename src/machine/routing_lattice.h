@@ -18,6 +18,9 @@ struct lattice {
     /* (nrouter x degree) links that leave: up and down in each dimension, or to each coordinate */
     int *out;
     int *at; /* (nrouter x ndim) coordinates */
+    /* (nrouter x nrouter) by order of dimensions, ascending and descending: place in a router's row
+     * of `out` of the link on to another router; NULL: not kept */
+    uint8_t *slot[2];
 };
 
 /* lattice_create: of r->topology, memory from a. */

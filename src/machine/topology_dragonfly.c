@@ -2,11 +2,12 @@
  * Valiant routes.
  *
  * dims = {p, a, h, g}: p nodes and h global links per router, a routers per group, g groups (0: the
- * most, a h + 1). Global port q of group G, at its router floor(q / h), leads to group G + 1 + (q
- * mod (g-1)) mod g and belongs to copy floor(q / (g-1)) of the links between the two groups; the
- * other end is port g - 2 - (q mod (g-1)) of that copy. Minimal: local, global, local. Valiant:
- * minimal to a random third group, then minimal. The class is the number of global links behind, so
- * that routes cannot wait in a circle.
+ * most, a h + 1). Global port q of group G, at its router floor(q / h), is slot q mod (g-1) of copy
+ * floor(q / (g-1)) of the links between two groups. Slot s leads to group G + 1 + s mod g, or with
+ * absolute numbers to the s-th of the other groups; the same copy leads back from there (Hastings
+ * et al., "Comparing global link arrangements for dragonfly networks", CLUSTER 2015). Minimal:
+ * local, global, local. Valiant: minimal to a random third group, then minimal. The class is the
+ * number of global links behind, so that routes cannot wait in a circle.
  *
  * Links: local r (a-1) + j', j' the other router of the group less one where above; then global by
  * group and port. */
@@ -18,7 +19,7 @@ struct dragonfly {
     int copies;       /* links between two groups */
     int used;         /* global ports in use per group */
     int first_global; /* number of the first global link */
-    bool valiant;
+    bool valiant, absolute;
 };
 
 /* With fewer groups than a h + 1 the global ports are shared out evenly: `copies` links between any
@@ -42,6 +43,7 @@ static bool dragonfly_create(struct topology *t, struct arena *a, struct err *e)
     /* Links are numbered group by group: local ones first, then the global ports in use. */
     g->copies = (int)((most - 1) / (groups - 1));
     g->used = g->copies * (g->g - 1);
+    g->absolute = t->spec->absolute;
     g->valiant = t->spec->routing == ROUTE_VALIANT && g->g > 2;
     t->state = g;
     t->nrouter = g->g * g->a;
@@ -57,10 +59,20 @@ static bool dragonfly_create(struct topology *t, struct arena *a, struct err *e)
     return true;
 }
 
+/* The slot of group `from` whose links lead to group `to`, and the other way about. */
+static int slot_to(const struct dragonfly *g, int from, int to)
+{
+    return g->absolute ? to - (to > from) : (to - from - 1 + g->g) % g->g;
+}
+static int group_at(const struct dragonfly *g, int from, int slot)
+{
+    return g->absolute ? slot + (slot >= from) : (from + 1 + slot) % g->g;
+}
+
 /* the global port of group `from` that leads to group `to`, in the copy that these ends use */
 static int global_port(const struct dragonfly *g, int from, int to, int ends)
 {
-    return (to - from - 1 + g->g) % g->g + (g->g - 1) * (ends % g->copies);
+    return slot_to(g, from, to) + (g->g - 1) * (ends % g->copies);
 }
 
 /* stage: global links behind; via: group to pass through first, -1: none; at: what picks among
@@ -106,7 +118,7 @@ static bool dragonfly_next(const struct topology *t, struct route_cursor *c, str
         local_hop(g, c, gate, h);
         return true;
     }
-    int slot = q % (g->g - 1), peer = g->g - 2 - slot + q - slot;
+    const int peer = slot_to(g, goal, group) + q - slot_to(g, group, goal);
     h->link = g->first_global + group * g->used + q;
     h->port = g->a - 1 + peer % g->h;
     c->router = goal * g->a + peer / g->h;
@@ -129,9 +141,10 @@ static void dragonfly_ends(const struct topology *t, int link, int *from, int *t
         return;
     }
     int group = (link - g->first_global) / g->used, q = (link - g->first_global) % g->used;
-    int slot = q % (g->g - 1), peer = g->g - 2 - slot + q - slot;
+    const int slot = q % (g->g - 1), goal = group_at(g, group, slot),
+              peer = slot_to(g, goal, group) + q - slot;
     *from = group * g->a + q / g->h;
-    *to = (group + 1 + slot) % g->g * g->a + peer / g->h;
+    *to = goal * g->a + peer / g->h;
     *port = g->a - 1 + peer % g->h;
 }
 

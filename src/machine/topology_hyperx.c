@@ -39,6 +39,10 @@ static bool hyperx_shape(struct hyperx *g, struct topology *t, struct err *e)
         g->radix[d] = s->dims[d];
         g->stride[d] = (int)nrouter;
         g->bundle[d] = d < s->nbundle ? s->bundle[d] : 1;
+        if (g->bundle[d] < 1)
+            return err_set(e, ERR_CONFIG,
+                           "topology hyperx: %d cables in dimension %d; expected at least 1",
+                           g->bundle[d], d);
         g->port[d] = (int)nport;
         nrouter *= s->dims[d];
         nport += (int64_t)(s->dims[d] - 1) * g->bundle[d];

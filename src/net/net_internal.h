@@ -63,14 +63,14 @@ struct net {
     /* (nlink), NULL when all links have the rate `link` */
     struct net_rate *link_rate;
     int nnode, nlink, nresource;
-
     /* messages of one node are handed over in the order of their ready times */
     bool port_private;
-    int64_t in_flight;      /* messages accepted and not yet delivered */
-    struct link_load *load; /* (njob x nresource), NULL unless wanted; who each is: net_links */
-    int njob;               /* whose messages are counted apart (net_count_jobs) */
-    const struct routing *routing; /* NULL: the topology's routes, cables all alike (net_way.h) */
-    sim_ps *wire;                  /* (nlink) what cables add to the hop latency; NULL: nothing */
+    int64_t in_flight;       /* messages accepted and not yet delivered */
+    struct link_load *load;  /* (njob x nresource), NULL unless wanted; who each is: net_links */
+    int njob;                /* whose messages are counted apart (net_count_jobs) */
+    struct routing *routing; /* NULL: the topology's routes, cables all alike (net_way.h) */
+    sim_ps *way;             /* (nrouter x nrouter) 1 + net_way, 0: not known; NULL: not kept */
+    sim_ps *wire;            /* (nlink) what cables add to the hop latency; NULL: nothing */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
     struct net_hold *hold;  /* (nresource) with path */
     void *state;            /* of the level */

@@ -12,16 +12,16 @@ static bool packet_config(const struct net *n, struct err *e)
 {
     const struct network_spec *w = &n->machine->network;
     if (w->flit_bytes < 1)
-        return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit_bytes of at least 1 B",
+        return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit of at least 1 B",
                        n->type->name);
     if (n->link.flit < 1 || n->port[0].rate.flit < 1 || n->ejection.flit < 1)
-        return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link_bandwidth",
+        return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link.bandwidth",
                        n->type->name);
     if (w->virtual_channels < 1 || w->virtual_channels > 1024)
         return err_set(e, ERR_CONFIG, "network.virtual_channels is %d; level %s needs 1 to 1024",
                        w->virtual_channels, n->type->name);
     if (w->buffer_flits < 1)
-        return err_set(e, ERR_CONFIG, "network.buffer_flits is %d; level %s needs at least 1",
+        return err_set(e, ERR_CONFIG, "network.buffer is %d; level %s needs at least 1",
                        w->buffer_flits, n->type->name);
     if (n->topology->max_hops > INT16_MAX - 2)
         return err_set(e, ERR_CONFIG, "routes of up to %d links; level %s can follow %d",
@@ -52,7 +52,7 @@ static bool cut_through_config(const struct net *n, struct err *e)
     int64_t least = (trip + flit - 1) / flit;
     if (w->buffer_flits < least)
         return err_set(e, ERR_CONFIG,
-                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + "
+                       "network.buffer is %d; level %s needs at least %lld (hop_latency + "
                        "credit_latency = %lld ps in flits of %lld ps)",
                        w->buffer_flits, n->type->name, (long long)least, (long long)trip,
                        (long long)flit);
@@ -61,9 +61,9 @@ static bool cut_through_config(const struct net *n, struct err *e)
     int64_t flits = net_flits(n, w->packet_bytes);
     if (flits > w->buffer_flits)
         return err_set(e, ERR_CONFIG,
-                       "network.packet_bytes %lld with network.header_bytes %lld makes packets of "
-                       "%lld flits, but network.buffer_flits is %d; level %s needs whole packets "
-                       "to fit: buffer_flits >= %lld or packet_bytes <= %lld",
+                       "network.packet %lld with network.header %lld makes packets of "
+                       "%lld flits, but network.buffer is %d; level %s needs whole packets "
+                       "to fit: buffer >= %lld or packet <= %lld",
                        (long long)w->packet_bytes, (long long)w->header_bytes, (long long)flits,
                        w->buffer_flits, n->type->name, (long long)flits,
                        (long long)(w->buffer_flits * w->flit_bytes - w->header_bytes));

@@ -23,35 +23,15 @@ void router_post(struct routers *g, int r, sim_ps at)
     sim_at(n->sim, at, lane, (uint64_t)n->nresource + (uint64_t)r, g->look, g, (uint64_t)r);
 }
 
-/* ---- fronts ---- */
+/* ---- ways on ---- */
 
-static void busy_enter(struct routers *g, struct lane *v)
-{
-    struct lane **list = &g->router[v->of->to].busy;
-    if (v->busy_link) return;
-    v->busy = *list;
-    if (v->busy) v->busy->busy_link = &v->busy;
-    *list = v;
-    v->busy_link = list;
-}
-
-static void busy_leave(struct lane *v)
-{
-    if (!v->busy_link) return;
-    *v->busy_link = v->busy;
-    if (v->busy) v->busy->busy_link = v->busy_link;
-    v->busy_link = NULL;
-}
-
-/* The ways on of v's front into v->option; of rules that may have many by way of a list on the
- * stack. Returns how many. */
-static int options_find(struct routers *g, struct lane *v)
+/* The ways on of v's front into v->option, where there may be more than a lane has memory for, by
+ * way of a list on the stack. Returns how many. */
+static __attribute__((noinline)) int options_find(struct routers *g, struct lane *v)
 {
     const struct routing_view view = {router_used, g};
-    struct route *way = &v->front->worm->route;
     struct route_option option[ROUTING_MOST_OPTIONS];
-    if (g->routing->most <= v->room) return routing_next(g->routing, way, &view, v->option);
-    const int n = routing_next(g->routing, way, &view, option);
+    const int n = routing_next(g->routing, &v->front->worm->route, &view, option);
     if (n > v->room) {
         v->room = n;
         v->option = TAKE(g->fabric.net->arena, n, struct route_option);
@@ -62,50 +42,30 @@ static int options_find(struct routers *g, struct lane *v)
 
 void router_route(struct routers *g, struct lane *v)
 {
+    const struct routing_view view = {router_used, g};
     const bool looks = router_looks(g, v);
-    const int n = options_find(g, v);
+    struct route *way = &v->front->worm->route;
+    const int n = g->few ? routing_next(g->routing, way, &view, v->option) : options_find(g, v);
+    const struct route_option *o = v->option;
     int first = 0, count;
     v->noption = (int16_t)n;
-    if (n == 0) count = routing_eject(g->routing, &v->front->worm->route, &first);
-    else count = router_channels(v, v->option, &first);
+    if (n == 0) {
+        count = routing_eject(g->routing, way, &first);
+        v->way = g->sink + way->node;
+    } else {
+        first = o->first;
+        count = o->count;
+        v->way = net_resource(g->fabric.net, o->link);
+    }
     v->first = (int16_t)first;
     v->count = (int16_t)count;
-    v->way = router_out(g, v, n == 0 ? NULL : v->option);
     const struct port *p = &g->port[v->way];
     v->ways = router_bit(p->out);
-    for (int i = 1; i < n; i++)
-        v->ways |= router_bit(g->port[router_out(g, v, &v->option[i])].out);
+    for (int i = 1; i < n; i++) v->ways |= router_bit(g->port[router_out(g, v, &v->option[i])].out);
     /* What the look at it will ask of. */
     if (p->lane) __builtin_prefetch(&p->lane[first]);
     v->state = LANE_ASKING;
     if (looks) v->due += g->setup;
-}
-
-/* The head of v's front is there, or on its way: it is routed when it is there and the tail ahead
- * of it has gone; then it asks. Where load does not matter the way is found at once, which saves an
- * event and tells others early. */
-void router_front_comes(struct routers *g, struct lane *v)
-{
-    const struct port *p = v->of;
-    v->due = router_later(v->front->first + g->reach + p->wire, v->left);
-    if (router_looks(g, v)) {
-        v->state = LANE_ROUTING;
-    } else {
-        v->due += g->setup;
-        router_route(g, v);
-    }
-    busy_enter(g, v);
-    router_wake(g, p->to, v->due);
-}
-
-void router_front(struct routers *g, struct lane *v)
-{
-    if (v->front && v->front->sent > 0) {
-        router_front_comes(g, v);
-        return;
-    }
-    v->state = LANE_IDLE;
-    busy_leave(v);
 }
 
 /* ---- credits ---- */

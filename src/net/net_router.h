@@ -13,13 +13,16 @@
 
 enum { ROUTER_AHEAD = 16 }; /* most flits that a router sends ahead of time */
 
-/* A packet in the network. */
+enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
+
+/* A packet in the network. What a step at a router asks of it lies in its first line. */
 struct worm {
+    _Alignas(ROUTER_LINE) int32_t flits;
+    int32_t index;
+    struct route route;
     struct worm *next; /* in the pool */
     struct flight *flight;
-    int32_t flits, index;
     int first, count; /* channels over which it may enter the network */
-    struct route route;
 };
 
 /* A worm at one port of its way. */
@@ -45,23 +48,19 @@ struct stay {
     sim_ps come, go;
 };
 
-enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
-
 enum { LANE_OPTIONS = 2 }; /* ways on that a lane has memory for: few rules give more */
 
 /* A virtual channel of a port, and the FIFO at its end. What a router asks of a channel that it may
  * give lies in the first line, what it asks of a FIFO in the second. */
 struct lane {
-    _Alignas(ROUTER_LINE) struct leg *owner; /* who sends over it, from its head to its tail */
+    /* From when on it can be given to anybody: it is empty, nobody's, and all its credits are back;
+     * SIM_NEVER: it is not, or that is not known. */
+    _Alignas(ROUTER_LINE) sim_ps clear;
     sim_ps free;            /* when the next may own it, if nobody does */
     sim_ps left;            /* when the flit that left last had left */
     int64_t in, out;        /* flits that ever entered and left */
     struct stay *stay;      /* (ring) of flit n */
     uint32_t accept, grant; /* round robin: as a FIFO that asks, as a channel that is given */
-    int32_t port;
-    int16_t channel; /* of that port */
-    bool starved;    /* somebody upstream waits for a flit of it to be sent */
-    bool bars;       /* one of its options has no channel, which spoils its turn at the switch */
 
     struct port *of;                /* port[port] */
     struct leg *front;              /* of the worms in the FIFO */
@@ -71,12 +70,19 @@ struct lane {
     int32_t way;                    /* its first or only way on: port, */
     int16_t first, count;           /* channels */
     int16_t noption;
-    uint8_t state; /* enum lane_state */
+    uint8_t state;  /* enum lane_state */
+    bool starved;   /* somebody upstream waits for a flit of it to be sent */
+    uint32_t input; /* its number among the FIFOs of the router at its end, */
 
+    uint32_t output; /* among the channels of the router at its beginning: turns go by these */
+    int32_t port;
+    struct leg *owner;           /* who sends over it, from its head to its tail */
     struct leg *back;            /* of the worms in the FIFO */
     struct route_option *option; /* (noption) of the front, none: to its node */
     int room;                    /* options that there is memory for, */
-    struct route_option few[LANE_OPTIONS]; /* mostly here */
+    int16_t channel;             /* of its port */
+    bool bars; /* one of its options has no channel, which spoils its turn at the switch */
+    struct route_option few[LANE_OPTIONS]; /* memory for the options of most */
     /* Of one allocation: */
     int pick_priority;
     struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */
@@ -110,14 +116,15 @@ struct router {
 struct routers {
     struct fabric fabric; /* first */
     const struct routing *routing;
-    sim_action *look;      /* what an event of a router does: router_look */
+    sim_action *look; /* what an event of a router does: router_look */
     void (*post)(struct routers *g, int r, sim_ps at); /* see that r is looked at, at time `at` */
-    bool whole;            /* packets move as one: level packet */
-    bool priority;         /* allocation of channels obeys the options' priorities */
-    bool strict;           /* heads bid for all their options, as in BookSim's router */
-    int iterations;        /* of an allocation */
-    bool single;           /* a channel that a lone head is given in the first one stays its own */
-    int64_t ring;          /* places of a lane's arrays - 1: a power of two of at least a buffer */
+    bool whole;                                        /* packets move as one: level packet */
+    bool priority;  /* allocation of channels obeys the options' priorities */
+    bool strict;    /* heads bid for all their options, as in BookSim's router */
+    int iterations; /* of an allocation */
+    bool single;    /* a channel that a lone head is given in the first one stays its own */
+    bool quick;     /* a head whose way is clear goes without an allocation (router_quick) */
+    int64_t ring;   /* places of a lane's arrays - 1: a power of two of at least a buffer */
     /* Of the net, where a step finds them: hop latency and credit; from when a flit crosses a port
      * until it is in the FIFO behind it, and a head's setup there; a channel's pause after a tail;
      * buffer and channels; the first way out. */
@@ -136,10 +143,11 @@ struct routers {
     struct lane **active; /* (lanes of the router that has most) */
     int nask, nbid, ask_room, bid_room;
     sim_ps now;
-    bool even;   /* links and ways out have one rate */
+    bool even;                  /* links and ways out have one rate */
     bool fits, looks, looks_on; /* of the rule: `fits`, loads decide at the source, also later */
-    bool spares; /* no look at a router without need (router_gather) */
-    struct gather *gather; /* one event for all of an instant; NULL: one for each router */
+    bool few;                   /* no rule's list of options is longer than a lane's memory */
+    bool spares;                /* no look at a router without need (router_gather) */
+    struct gather *gather;      /* one event for all of an instant; NULL: one for each router */
 };
 
 /* router_look_at: if router r is due: channels to heads, then the switch to flits. router_look: an

@@ -70,8 +70,8 @@ static void channels_offer(struct routers *g)
     for (int i = 0; i < g->nask; i++) {
         struct lane *in = g->ask[i].in, *out = g->ask[i].out;
         if (out->match || in->match) continue;
-        if (!out->fresh || router_after(router_input(g, in), out->grant) <
-                               router_after(router_input(g, out->fresh), out->grant))
+        if (!out->fresh ||
+            router_after(in->input, out->grant) < router_after(out->fresh->input, out->grant))
             out->fresh = in;
         out->wish = out->fresh;
     }
@@ -88,8 +88,7 @@ static void channels_accept(struct routers *g, bool turns)
         if (out->wish != in) continue;
         if (in->pick && priority < in->pick_priority) continue;
         if (!in->pick || priority > in->pick_priority ||
-            router_after(router_output(g, out), in->accept) <
-                router_after(router_output(g, in->pick), in->accept)) {
+            router_after(out->output, in->accept) < router_after(in->pick->output, in->accept)) {
             in->pick = out;
             in->pick_priority = priority;
         }
@@ -99,9 +98,7 @@ static void channels_accept(struct routers *g, bool turns)
         if (in->pick != out) continue;
         in->match = out;
         out->match = in;
-        if (!turns) continue;
-        out->grant = router_input(g, in) + 1;
-        in->accept = router_output(g, out) + 1;
+        if (turns) router_channel_given(in, out);
     }
 }
 
@@ -156,8 +153,7 @@ static sim_ps sends_from(struct routers *g, struct lane *v, sim_ps now)
     const struct port *p = &g->port[to->port];
     const sim_ps at = router_later(v->stay[v->out & g->ring].come, switch_free(v, p));
     if (to->port >= g->sink) return at;
-    return router_later(at,
-                        router_room(g, &p->lane[to->channel], router_unit(g, to->worm), now));
+    return router_later(at, router_room(g, &p->lane[to->channel], router_unit(g, to->worm), now));
 }
 
 /* Then it bids; SIM_NEVER unless it will have to come back. */
@@ -239,9 +235,7 @@ static void switch_accept(struct routers *g, bool turns)
         if (in->pick != out || in->match) continue;
         in->match = out;
         out->match = in;
-        if (!turns) continue;
-        out->grant = in->in + 1;
-        in->accept = out->out + 1;
+        if (turns) router_crosses(in, out);
     }
 }
 
@@ -386,6 +380,12 @@ static sim_ps look_single(struct routers *g, struct lane *v, sim_ps now)
     return allocate_together(g, 1, now);
 }
 
+/* v, which is in nobody's way, goes if its own is clear. */
+static inline bool passes_quickly(struct routers *g, struct lane *v, sim_ps now)
+{
+    return g->quick && v->state == LANE_ASKING && v->noption <= 1 && router_quick(g, v, now);
+}
+
 static sim_ps look_several(struct routers *g, int r, sim_ps now)
 {
     sim_ps again = SIM_NEVER;
@@ -395,20 +395,47 @@ static sim_ps look_several(struct routers *g, int r, sim_ps now)
     if (meet || !are_apart(g, n)) return router_sooner(again, allocate_together(g, n, now));
     /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
     for (int k = 0; k < n; k++)
-        again = router_sooner(again, router_pass(g, g->active[k], now));
+        if (!passes_quickly(g, g->active[k], now))
+            again = router_sooner(again, router_pass(g, g->active[k], now));
     return again;
+}
+
+/* Most often one lane is due, whose head has a clear way. Returns whether that was so, or nothing
+ * is due; *again: when others are. */
+static inline bool look_quickly(struct routers *g, struct lane *busy, sim_ps now, sim_ps *again)
+{
+    struct lane *due = NULL;
+    for (struct lane *v = busy; v; v = v->busy) {
+        if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
+        /* Whether a flit can go is asked with care, and of heads that come together or have several
+         * ways on, too. */
+        if (v->state == LANE_SENDING) return false;
+        if (v->due > now) {
+            *again = router_sooner(*again, v->due);
+            continue;
+        }
+        if (due || v->noption > 1) return false;
+        due = v;
+    }
+    return !due || router_quick(g, due, now);
+}
+
+/* All else: apart, so that the quick look needs few registers. */
+static __attribute__((noinline)) sim_ps look_slowly(struct routers *g, int r, sim_ps now)
+{
+    struct lane *v = g->router[r].busy;
+    return g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
 }
 
 void router_look_at(struct routers *g, int r, sim_ps now)
 {
     struct router *o = &g->router[r];
+    sim_ps again = SIM_NEVER;
     if (o->wake != now + 1) return; /* an earlier look did it */
     o->wake = 0;
     g->now = now;
-    struct lane *v = o->busy;
-    if (!v) return;
-    const sim_ps again =
-        g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
+    if (!o->busy) return;
+    if (!g->quick || !look_quickly(g, o->busy, now, &again)) again = look_slowly(g, r, now);
     if (again != SIM_NEVER) router_wake(g, r, again);
 }
 

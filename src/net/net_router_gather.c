@@ -48,17 +48,37 @@ static inline void look_source(struct routers *g, int node, sim_ps now)
     if (o->wake == now + 1) router_source_look(g, node, now);
 }
 
-/* Of the router that comes next in its word, the lane that will be asked first is fetched already.
- */
-static inline void look_router(struct routers *g, const struct gather_slot *s, int r, sim_ps now)
+/* The nodes of slot s. */
+static void look_sources(struct routers *g, struct gather_slot *s, sim_ps now)
 {
-    const uint64_t rest = s->router.word[r / GATHER_WORD];
-    if (rest) {
-        const int next = r / GATHER_WORD * GATHER_WORD + __builtin_ctzll(rest);
-        const struct lane *v = g->router[next].busy;
-        if (v) __builtin_prefetch(&v->of);
-    }
-    router_look_at(g, r, now);
+    g->gather->sources = false;
+    for (int i; (i = set_take(&s->source)) >= 0;) look_source(g, i, now);
+}
+
+/* The routers of a slot, word by word: none is added to the slot whose time has come. Of the router
+ * that comes next, the lane that will be asked first is fetched already. Nodes that can go on at
+ * once go first. */
+static void look_routers(struct routers *g, struct gather_slot *s, sim_ps now)
+{
+    struct gather_set *t = &s->router;
+    for (int f = 0; f < t->nfull; f++)
+        for (uint64_t full = t->full[f]; full; full &= full - 1) {
+            const int w = f * GATHER_WORD + __builtin_ctzll(full);
+            uint64_t word = t->word[w];
+            const struct router *first = &g->router[w * GATHER_WORD];
+            t->word[w] = 0;
+            while (word) {
+                const int i = __builtin_ctzll(word);
+                word &= word - 1;
+                if (word) {
+                    const struct lane *v = first[__builtin_ctzll(word)].busy;
+                    if (v) __builtin_prefetch(&v->of);
+                }
+                router_look_at(g, w * GATHER_WORD + i, now);
+                if (g->gather->sources) look_sources(g, s, now);
+            }
+        }
+    for (int f = 0; f < t->nfull; f++) t->full[f] = 0;
 }
 
 /* Event: the slot `argument` has come. What is added meanwhile for this very instant is looked at,
@@ -70,11 +90,12 @@ static void look_all(void *subject, uint64_t argument, sim_ps now)
     struct gather_slot *s = &q->slot[argument];
     q->base = now;
     q->at = (unsigned)argument;
-    for (int i;;) {
-        if ((i = set_take(&s->source)) >= 0) look_source(g, i, now);
-        else if ((i = set_take(&s->router)) >= 0) look_router(g, s, i, now);
-        else if ((i = set_take(&q->again)) >= 0) router_look_at(g, i, now);
-        else break;
+    /* Nodes, routers, then those that had a second look coming. */
+    look_sources(g, s, now);
+    look_routers(g, s, now);
+    for (int i; (i = set_take(&q->again)) >= 0;) {
+        router_look_at(g, i, now);
+        if (q->sources) look_sources(g, s, now);
     }
     s->posted = false;
     q->posted--;
@@ -136,8 +157,10 @@ static void post_source(struct fabric *f, int node, sim_ps at)
     struct routers *g = (struct routers *)(void *)f;
     struct gather_slot *s = slot_of(g, at);
     struct sim *sim = f->net->sim;
-    if (s) gather_set_add(&s->source, node);
-    else if (at > sim_now(sim))
+    if (s) {
+        gather_set_add(&s->source, node);
+        if (at == g->gather->base) g->gather->sources = true;
+    } else if (at > sim_now(sim))
         sim_at(sim, at, LANE_ENTER, (uint64_t)node, enter, g, (uint64_t)node);
     else sim_at(sim, at, NET_LANE_ARBITRATE, (uint64_t)node, alone_source, g, (uint64_t)node);
 }
@@ -166,11 +189,14 @@ bool router_gather(struct net *n)
     g->gather->hop_steps = gather_steps(g->gather, g->tau);
     g->gather->hop = g->tau;
     set_make(&g->gather->again, n->topology->nrouter, n->arena);
+    routing_keep(n->routing, n->arena);
+    net_keep_ways(n);
     g->fabric.wake = post_source;
     g->post = post_gathered;
     g->fabric.ahead = true;
     /* At different rates who lost comes back too late for some turns, and where packets must fit,
      * who finds no room does not know when to come back: there a look without need is none. */
     g->spares = g->even && !n->routing->fits;
+    g->quick = g->spares && g->single;
     return true;
 }

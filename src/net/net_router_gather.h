@@ -26,6 +26,7 @@ struct gather {
     int hop_steps;   /* in slots; -1: none */
     unsigned at;
     int posted;              /* slots */
+    bool sources;            /* nodes came to slot `at` */
     struct gather_set again; /* routers that are looked at again at `base` */
     struct gather_slot slot[GATHER_SLOTS];
 };

@@ -11,12 +11,6 @@ struct lane *router_lanes_make(struct routers *g, int p);
 /* router_route: the way on of v's front; what it asks for from when on. */
 void router_route(struct routers *g, struct lane *v);
 
-/* router_front: lane v may have a new front: find out when its way on is due. */
-void router_front(struct routers *g, struct lane *v);
-
-/* router_front_comes: v has a front, whose head has crossed its port. */
-void router_front_comes(struct routers *g, struct lane *v);
-
 /* router_own: the front of v gets lane `out`, by its option o. */
 void router_own(struct routers *g, struct lane *v, struct lane *out);
 
@@ -26,6 +20,10 @@ void router_send(struct routers *g, struct lane *v, sim_ps now);
 /* router_pass: what an allocation comes to when v alone asks or sends: it gets what it wants, and
  * turns move on. Returns when to look again; SIM_NEVER: nothing of v needs it. */
 sim_ps router_pass(struct routers *g, struct lane *v, sim_ps now);
+
+/* router_quick: the same for a head with one way on, if that is clear at `now`; else it does
+ * nothing that matters and returns false. Nothing of v needs another look then. Where g->quick. */
+bool router_quick(struct routers *g, struct lane *v, sim_ps now);
 
 /* router_leg: lane v of port p becomes w's: a leg at the end of its FIFO. */
 struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v);
@@ -68,6 +66,10 @@ static inline sim_ps router_room(const struct routers *g, struct lane *v, int32_
     }
     return now;
 }
+
+/* lane_restart: v is clear, and its ring begins anew: mostly the first places are enough, and stay
+ * in the cache. */
+static inline void lane_restart(struct lane *v) { v->in = v->out = 0; }
 
 /* lane_enter: l at the end of v's FIFO. */
 static inline void lane_enter(struct lane *v, struct leg *l)
@@ -117,21 +119,25 @@ static inline bool router_looks(const struct routers *g, const struct lane *v)
 /* router_after: the place of a number after `turn`, in unsigned arithmetic that wraps. */
 static inline uint32_t router_after(uint32_t number, uint32_t turn) { return number - turn; }
 
-/* router_input, router_output: the number of FIFO or channel v among those of its router's inputs,
- * its outputs: turns are round robin by these. */
-static inline uint32_t router_input(const struct routers *g, const struct lane *v)
-{
-    return v->of->in * g->nchannel + (uint32_t)v->channel;
-}
-static inline uint32_t router_output(const struct routers *g, const struct lane *v)
-{
-    return v->of->out * g->nchannel + (uint32_t)v->channel;
-}
-
 /* router_next_channel: the channel after v's, round. */
 static inline int router_next_channel(const struct routers *g, const struct lane *v)
 {
     return (uint32_t)v->channel + 1 < g->nchannel ? v->channel + 1 : 0;
+}
+
+/* router_crosses: a flit comes from input `in` over output `out`: the turns of both sides of the
+ * switch move on. */
+static inline void router_crosses(struct port *in, struct port *out)
+{
+    out->grant = in->in + 1;
+    in->accept = out->out + 1;
+}
+
+/* router_channel_given: FIFO v gets channel `out`: the turns of both move on. */
+static inline void router_channel_given(struct lane *v, struct lane *out)
+{
+    out->grant = v->input + 1;
+    v->accept = out->output + 1;
 }
 
 /* router_may_hold: whether w may be given channel v. A worm that spreads over two channels and is

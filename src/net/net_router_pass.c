@@ -4,8 +4,10 @@
  * Most looks find one lane that nobody disputes anything: its head gets the channel whose turn it
  * is and the way through the switch, and goes, in one step without lists and rounds. The times and
  * turns are those that the allocation of net_router_allocate.c comes to. */
-#include "net/net_router_gather.h"
-#include "net/net_router_lane.h"
+#include "net/net_router_front.h"
+
+/* For whole packets and for flits apart: `whole` is constant in each. */
+#define INLINED static inline __attribute__((always_inline))
 
 /* ---- moving on ---- */
 
@@ -27,13 +29,23 @@ static bool somebody_asks(const struct routers *g, int r, sim_ps at)
     return w != NULL;
 }
 
+/* From when on v, which is nobody's, is clear: once it is empty, with the last credit. */
+static inline void lane_clears(const struct routers *g, struct lane *v)
+{
+    if (v->in == v->out && !v->owner)
+        v->clear = router_later(v->free, v->left + g->credit + v->of->wire);
+}
+
 /* The tail of v's packet has crossed into out: the channel is free for the next, and v has the
  * front that it has now: what stood behind it, from a flit after the tail on. */
-static void tail_sent(struct routers *g, struct lane *v, struct lane *out, sim_ps tail, sim_ps flit)
+static inline void tail_sent(struct routers *g, struct lane *v, struct lane *out, sim_ps tail,
+                             sim_ps flit)
 {
     /* From its tail on the next packet may own the channel, at a time that may lie ahead. */
     out->owner = NULL;
     out->free = ps_later(tail, flit + g->pause);
+    lane_clears(g, out);
+    lane_clears(g, v);
     router_front(g, v);
     /* Others may want the channel. */
     const int r = v->of->to;
@@ -108,6 +120,7 @@ static inline void packet_crosses(struct routers *g, struct lane *v, struct port
     n = out->in;
     end = n + flits;
     out->in = end;
+    out->clear = SIM_NEVER;
     for (sim_ps at = come; n < end; n++, at += flit) stay[n & ring].come = at;
 }
 
@@ -126,6 +139,7 @@ static inline int32_t flits_cross(struct routers *g, struct lane *v, struct port
     int32_t sent = 1;
     from[k++ & ring].go = now;
     v->out = k;
+    out->clear = SIM_NEVER;
     if (!sink) to[out->in++ & ring].come = now + way;
     *last = now;
     if (most > here) most = (int32_t)here;
@@ -146,15 +160,15 @@ static inline int32_t flits_cross(struct routers *g, struct lane *v, struct port
     }
     if (sent == 1) return 1;
     /* Alone at both sides of the switch it would have won every round. */
-    p->grant = v->of->in + 1;
-    v->of->accept = p->out + 1;
+    router_crosses(v->of, p);
     return sent;
 }
 
-/* A place has become free, and somebody waits for it. */
+/* A place has become free, and somebody waits for it: for its credit, or with a whole packet, whose
+ * first flits may go before the place for the last one is free, from now on. */
 static inline void place_freed(struct routers *g, struct lane *v, sim_ps now)
 {
-    if (v->starved) upstream_wake(g, v->port, now + g->credit + v->of->wire);
+    if (v->starved) upstream_wake(g, v->port, g->whole ? now : now + g->credit + v->of->wire);
     v->starved = false;
 }
 
@@ -252,8 +266,8 @@ static inline struct chance find_channel(struct routers *g, struct lane *v, stru
 
 /* The front of v gets channel `out` of port p and the switch and goes, alone. The same as
  * router_own and router_send, in one step: if all of the packet has gone, its leg goes with it. */
-static inline void pass_on(struct routers *g, struct lane *v, struct port *in, struct lane *out,
-                           struct port *p, bool sink, sim_ps now, const bool whole)
+INLINED void pass_on(struct routers *g, struct lane *v, struct port *in, struct lane *out,
+                     struct port *p, bool sink, sim_ps now, const bool whole)
 {
     struct leg *l = v->front;
     struct worm *w = l->worm;
@@ -295,6 +309,54 @@ static inline void pass_on(struct routers *g, struct lane *v, struct port *in, s
     worm_left(g, w, tail);
 }
 
+/* Of the channels that v's only way on offers at `now`, the one whose turn it is. NULL: none is
+ * there, or the way of the one is not clear at once. */
+static inline struct lane *clear_channel(struct routers *g, const struct lane *v,
+                                         const struct port *p, sim_ps now, const bool whole)
+{
+    const uint32_t turn = v->accept - p->out * g->nchannel - (uint32_t)v->first;
+    const int count = v->count;
+    int k = turn < (uint32_t)count ? (int)turn : 0;
+    for (int i = 0; i < count; i++) {
+        struct lane *out = &p->lane[v->first + k];
+        if (++k == count) k = 0;
+        /* Mostly so, and then one comparison says it all. */
+        if (out->clear <= now) return out;
+        if (out->owner || out->free > now) continue;
+        if (!whole) return NULL;
+        if (v->noption > 0 && router_room(g, out, v->front->worm->flits, now) <= now) return out;
+    }
+    return NULL;
+}
+
+/* router_quick. The ways through the switch are free at both ends, and what is given can be used at
+ * once; nothing has changed when one of these is not so. */
+INLINED bool head_quick(struct routers *g, struct lane *v, sim_ps now, const bool whole)
+{
+    struct port *in = v->of, *p = &g->port[v->way];
+    if (router_later(in->passed, p->free) > now || !p->lane) return false;
+    struct lane *out = clear_channel(g, v, p, now, whole);
+    if (!out) return false;
+    /* Nobody is in the way: as in head_alone, but for what it looks up in case of a wait. */
+    if (out->clear <= now) lane_restart(out);
+    /* Alone it wins every round, and all turns move on. */
+    router_crosses(in, p);
+    in->turn = router_next_channel(g, v);
+    router_channel_given(v, out);
+    pass_on(g, v, in, out, p, v->noption == 0, now, whole);
+    return true;
+}
+
+static bool packet_quick(struct routers *g, struct lane *v, sim_ps now)
+{
+    return head_quick(g, v, now, true);
+}
+
+bool router_quick(struct routers *g, struct lane *v, sim_ps now)
+{
+    return g->whole ? packet_quick(g, v, now) : head_quick(g, v, now, false);
+}
+
 /* A head that asks. */
 static inline sim_ps head_alone(struct routers *g, struct lane *v, sim_ps now, const bool whole)
 {
@@ -311,14 +373,12 @@ static inline sim_ps head_alone(struct routers *g, struct lane *v, sim_ps now, c
     }
     /* The switch moves its turns on, even if there is no channel to use it for. */
     if (bids) {
-        p->grant = in->in + 1;
-        in->accept = p->out + 1;
+        router_crosses(in, p);
         in->turn = router_next_channel(g, v);
     }
     if (!c.channel) return bids ? router_sooner(again, ps_later(now, p->flit)) : again;
     /* So does the one offer that it accepts, as in a first round. */
-    c.channel->grant = router_input(g, v) + 1;
-    v->accept = router_output(g, c.channel) + 1;
+    router_channel_given(v, c.channel);
     /* It has a channel and the switch: a flit goes if its buffer has room. */
     if (bids && (whole || sink || router_room(g, c.channel, 1, now) <= now)) {
         pass_on(g, v, in, c.channel, p, sink, now, whole);
@@ -387,14 +447,12 @@ static sim_ps head_choosing(struct routers *g, struct lane *v, sim_ps now)
     }
     struct port *p = find_output(g, v, may, now, &again);
     if (p) {
-        p->grant = in->in + 1;
-        in->accept = p->out + 1;
+        router_crosses(in, p);
         if (!bars) in->turn = router_next_channel(g, v);
     }
     struct lane *out = best.channel;
     if (out) {
-        out->grant = router_input(g, v) + 1;
-        v->accept = router_output(g, out) + 1;
+        router_channel_given(v, out);
         router_own(g, v, out);
     }
     if (p && !bars && out && out->of == p &&
@@ -411,8 +469,7 @@ sim_ps router_pass(struct routers *g, struct lane *v, sim_ps now)
         return g->whole ? head_alone(g, v, now, true) : head_alone(g, v, now, false);
     /* It has a flit, a credit and the way. */
     struct port *in = v->of, *p = &g->port[v->front->ahead->port];
-    p->grant = in->in + 1;
-    in->accept = p->out + 1;
+    router_crosses(in, p);
     in->turn = router_next_channel(g, v);
     router_send(g, v, now);
     return SIM_NEVER;

@@ -18,6 +18,8 @@ struct lane *router_lanes_make(struct routers *g, int p)
         o->lane[i].option = o->lane[i].few;
         o->lane[i].room = LANE_OPTIONS;
         o->lane[i].channel = (int16_t)i;
+        o->lane[i].input = o->in * (uint32_t)count + (uint32_t)i;
+        o->lane[i].output = o->out * (uint32_t)count + (uint32_t)i;
         if (ring) o->lane[i].stay = ring + i * places;
     }
     return o->lane;
@@ -35,6 +37,8 @@ struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v)
     /* It owns the channel from now on, so that no other worm comes between its flits. */
     *l = (struct leg){.worm = w, .port = v->port, .channel = v->channel};
     v->owner = l;
+    if (v->clear <= g->now) lane_restart(v);
+    v->clear = SIM_NEVER;
     /* The sink has no FIFO: it takes what comes. */
     if (net_is_ejection(g->fabric.net, v->port)) return l;
     lane_enter(v, l);

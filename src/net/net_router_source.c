@@ -1,8 +1,7 @@
 /* net_router_source.c - packets from their nodes into the first lane, and the levels themselves. */
 #include <string.h>
 
-#include "net/net_router_gather.h"
-#include "net/net_router_lane.h"
+#include "net/net_router_front.h"
 
 /* ---- sources ---- */
 
@@ -189,6 +188,8 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     g->fits = n->routing->fits;
     g->looks = n->routing->by_load;
     g->looks_on = g->looks && !n->routing->at_source;
+    /* So that routes are written where they are kept. */
+    g->few = n->routing->most <= LANE_OPTIONS;
     g->even = !n->link_rate && n->ejection.flit == n->link.flit;
     /* A buffer, and what may be known to come. */
     while (g->ring + 1 < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;

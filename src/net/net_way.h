@@ -9,6 +9,10 @@
  * network; *slow becomes the slowest rate of that way. */
 sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow);
 
+/* net_keep_ways: for many messages: keep each answer of net_way, if it depends on both routers
+ * alone and the network is small. */
+void net_keep_ways(struct net *n);
+
 /* net_cables: the part of it that long links add to the hop latency. */
 sim_ps net_cables(const struct net *n, const struct net_message *m);
 

@@ -7,6 +7,8 @@
 #include "net/net_internal.h"
 #include "net/net_way.h"
 
+enum { MOST_KEPT = 512 }; /* routers of a network whose ways are kept */
+
 int64_t net_packets(const struct net *n, int64_t bytes)
 {
     int64_t most = n->machine->network.packet_bytes;
@@ -86,28 +88,47 @@ struct route net_route_begin(const struct net *n, const struct net_message *m)
     return routing_start(n->routing, m->src, m->dst, net_choice(m));
 }
 
-/* By a rule: the way of its first packet were there nobody else. */
-sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow)
+/* By a rule: the way of its first packet were there nobody else, and how many links it has. */
+static sim_ps ruled_way(const struct net *n, const struct net_message *m, struct net_rate *slow)
 {
     int nhop = 0, link;
+    /* Where all links are alike only their number counts. */
+    if (n->routing->minimal && !n->link_rate && !n->wire)
+        return (topology_distance(n->topology, m->src, m->dst) + 1) * n->tau;
+    struct route p = net_route_begin(n, m);
+    sim_ps cables = 0;
+    for (; routing_empty(n->routing, &p, &link); nhop++) {
+        if (n->link_rate) *slow = net_rate_slower(*slow, n->link_rate[link]);
+        if (n->wire) cables += n->wire[link];
+    }
+    return ps_later((nhop + 1) * n->tau, cables);
+}
+
+void net_keep_ways(struct net *n)
+{
+    const struct routing *r = n->routing;
+    const int routers = n->topology->nrouter;
+    const bool alike = !n->link_rate && (r->fixed || (r->minimal && !n->wire));
+    if (alike && routers <= MOST_KEPT)
+        n->way = TAKE(n->arena, size_product((size_t)routers, (size_t)routers), sim_ps);
+}
+
+sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow)
+{
+    const struct topology *t = n->topology;
+    int nhop;
     if (!n->routing) {
         *slow = net_slowest(n, m, &nhop);
         return (nhop + 1) * n->tau;
     }
+    const int from = topology_router_of(t, m->src), to = topology_router_of(t, m->dst);
     *slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
-    /* Where all links are alike only their number counts. */
-    if (n->routing->minimal && !n->link_rate && !n->wire) {
-        nhop = topology_distance(n->topology, m->src, m->dst);
-        if (nhop > 0) *slow = net_rate_slower(*slow, n->link);
-        return (nhop + 1) * n->tau;
-    }
-    struct route p = net_route_begin(n, m);
-    sim_ps cables = 0;
-    for (; routing_empty(n->routing, &p, &link); nhop++) {
-        *slow = net_rate_slower(*slow, n->link_rate ? n->link_rate[link] : n->link);
-        if (n->wire) cables += n->wire[link];
-    }
-    return ps_later((nhop + 1) * n->tau, cables);
+    if (!n->link_rate && from != to) *slow = net_rate_slower(*slow, n->link);
+    if (!n->way) return ruled_way(n, m, slow);
+    /* Zero is memory as it comes, and a way may take no time. */
+    sim_ps *way = &n->way[from * t->nrouter + to];
+    if (*way == 0) *way = 1 + ruled_way(n, m, slow);
+    return *way - 1;
 }
 
 /* Walked anew: only who records a path asks. */

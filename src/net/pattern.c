@@ -15,8 +15,8 @@
 #include "base/check.h"
 #include "base/text.h"
 
-/* routes that pattern_channel_load follows at most */
-enum { MOST_ROUTES = 1 << 24 };
+/* Routes that pattern_channel_load follows, digits, and numbers of a pattern, at most. */
+enum { MOST_ROUTES = 1 << 24, MOST_DIGITS = 31, MOST_NUMBERS = 16 };
 
 /* Every name, and whether it permutes bits of the node's number. The first of a rule is the one
  * that messages list. */
@@ -37,6 +37,7 @@ static const struct {
     {"randperm", PATTERN_PERMUTATION, false, false},
     {"bad_dragon", PATTERN_BAD_GROUP, false, false},
     {"badrandom", PATTERN_BAD_GROUP, false, true},
+    {"hotspot", PATTERN_HOT_SPOT, false, false},
 };
 enum { RULES = sizeof rules / sizeof *rules };
 
@@ -59,6 +60,18 @@ static int numbers_in(const char *text, int *number, int most)
         text = end;
     }
     return n;
+}
+
+/* Nothing but whole numbers behind the name, which brackets may enclose: a sign would be passed
+ * over like what stands between them. */
+static bool numbers_are_whole(const char *text, struct err *e)
+{
+    const char *rest = text + strcspn(text, "(0123456789");
+    const size_t length = strlen(rest);
+    const bool closed = length > 0 && rest[length - 1] == ')';
+    return (strspn(rest, "0123456789,_(){} ") == length && (rest[0] == '(') == closed) ||
+           err_set(e, ERR_DATA,
+                   "pattern '%.64s': expected whole numbers in brackets, such as (8,2)", text);
 }
 
 /* All names, for a message. */
@@ -91,19 +104,27 @@ static int rule_of(const char *text, struct err *e)
 
 /* ---- numbers of a pattern against the network */
 
-/* tornado(k,n) and neighbor(k,n) move digits to the base k: there must be k^n nodes. */
+/* tornado(k,n) and neighbor(k,n) move digits to the base k: there must be k^n nodes. Without
+ * numbers they move the coordinates of a grid's router, or all nodes as one ring. */
 static bool digits_read(struct pattern *p, const char *text, const struct topology *t,
-                        const int *number, int n, struct err *e)
+                        const int *number, int n, struct arena *a, struct err *e)
 {
-    bool given = n > 0,
-         grid = t->spec->family == TOPOLOGY_TORUS || t->spec->family == TOPOLOGY_MESH;
-    p->radix = given ? number[0] : t->spec->dims[0];
-    p->ndim = n > 1 ? number[1] : t->spec->ndim;
-    if (!given && !grid) return err_set(e, ERR_DATA, "pattern '%.64s': its radix is missing", text);
-    if (p->radix >= 2 && p->ndim >= 1 && p->ndim < 32 && pow(p->radix, p->ndim) == t->nnode)
-        return true;
-    return err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes",
-                   text, p->ndim, p->radix, t->nnode);
+    const struct topology_spec *s = t->spec;
+    const bool given = n > 0, grid = s->family == TOPOLOGY_TORUS || s->family == TOPOLOGY_MESH;
+    const int own = grid || given ? s->ndim : 1, ndim = n > 1 ? number[1] : own;
+    int *radix = TAKE(a, MOST_DIGITS, int);
+    double nodes = given || !grid ? 1 : s->nodes_per_router;
+    p->below = (int)nodes;
+    p->ndim = ndim;
+    p->radix = radix;
+    for (int d = 0; d < ndim && d < MOST_DIGITS; d++) {
+        radix[d] = given ? number[0] : grid ? s->dims[d] : t->nnode;
+        nodes *= radix[d];
+    }
+    const bool fit = !given || (number[0] >= 2 && ndim >= 1 && ndim <= MOST_DIGITS);
+    return (fit && nodes == t->nnode) ||
+           err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes",
+                   text, ndim, number[0], t->nnode);
 }
 
 /* shift(d) and xor(d). */
@@ -115,12 +136,31 @@ static bool distance_read(struct pattern *p, const char *text, int n, struct err
                    p->nnode);
 }
 
-/* A dragonfly's group has a routers with p nodes each. */
+/* A dragonfly's group has a routers with p nodes each, a dragonfly+'s l leaves. */
 static bool group_read(struct pattern *p, const char *text, const struct topology *t, struct err *e)
 {
-    if (t->spec->family != TOPOLOGY_DRAGONFLY)
+    if (t->spec->family != TOPOLOGY_DRAGONFLY && t->spec->family != TOPOLOGY_DRAGONFLY_PLUS)
         return err_set(e, ERR_DATA, "pattern '%.64s' needs a dragonfly", text);
     p->group = t->spec->dims[0] * t->spec->dims[1];
+    return true;
+}
+
+/* hotspot(d,...): a node may be named several times, to be hit as often. */
+static bool spots_read(struct pattern *p, const char *text, const int *number, int n,
+                       struct arena *a, struct err *e)
+{
+    int *spot = TAKE(a, MOST_NUMBERS, int);
+    if (n > MOST_NUMBERS)
+        return err_set(e, ERR_DATA, "pattern '%.64s': expected at most %d nodes", text,
+                       MOST_NUMBERS);
+    /* Node 0 if none is named. */
+    p->nspot = n > 0 ? n : 1;
+    p->spot = spot;
+    for (int i = 0; i < n; i++) {
+        spot[i] = number[i];
+        if (number[i] >= p->nnode)
+            return err_set(e, ERR_DATA, "pattern '%.64s': expected nodes below %d", text, p->nnode);
+    }
     return true;
 }
 
@@ -141,8 +181,10 @@ static void permutation_draw(struct pattern *p, uint64_t seed, struct arena *a)
 bool pattern_read(struct pattern *p, const char *text, const struct topology *t, struct arena *a,
                   struct err *e)
 {
-    int number[2] = {0, 0}, n = numbers_in(text, number, 2), found = rule_of(text, e);
-    if (found < 0) return false;
+    /* One more than any pattern takes, to see that there are too many. */
+    int number[MOST_NUMBERS + 1] = {0};
+    const int n = numbers_in(text, number, MOST_NUMBERS + 1), found = rule_of(text, e);
+    if (found < 0 || !numbers_are_whole(text, e)) return false;
     *p = (struct pattern){.rule = rules[found].rule, .nnode = t->nnode, .distance = number[0]};
     /* bits = ceil(log2 nnode); a pattern of bits needs it exact. */
     while (p->bits < 30 && 1 << p->bits < t->nnode) p->bits++;
@@ -151,12 +193,14 @@ bool pattern_read(struct pattern *p, const char *text, const struct topology *t,
     switch (p->rule) {
     case PATTERN_TORNADO:
     case PATTERN_NEIGHBOUR:
-        return digits_read(p, text, t, number, n, e);
+        return digits_read(p, text, t, number, n, a, e);
     case PATTERN_SHIFT:
     case PATTERN_XOR:
         return distance_read(p, text, n, e);
     case PATTERN_BAD_GROUP:
         return group_read(p, text, t, e);
+    case PATTERN_HOT_SPOT:
+        return spots_read(p, text, number, n, a, e);
     case PATTERN_PERMUTATION:
         permutation_draw(p, (uint64_t)number[0], a);
         return true;
@@ -167,12 +211,15 @@ bool pattern_read(struct pattern *p, const char *text, const struct topology *t,
 
 /* ---- destinations */
 
-/* Every coordinate of i moved up by `step` around its ring; i is written to the base `radix`. */
-static int digits_moved(const struct pattern *p, int i, int step)
+/* Every digit of i moved up around its ring: by 1, or half way around, less one, which is the worst
+ * case of minimal routing on a ring. */
+static int digits_moved(const struct pattern *p, int i)
 {
-    int to = 0, stride = 1;
-    for (int d = 0; d < p->ndim; d++, stride *= p->radix)
-        to += (i / stride + step) % p->radix * stride;
+    int to = i % p->below, stride = p->below;
+    for (int d = 0; d < p->ndim; stride *= p->radix[d++]) {
+        const int step = p->rule == PATTERN_TORNADO ? (p->radix[d] + 1) / 2 - 1 : 1;
+        to += (int)((i / stride % p->radix[d] + (int64_t)step) % p->radix[d]) * stride;
+    }
     return to;
 }
 
@@ -198,10 +245,8 @@ int pattern_destination(const struct pattern *p, int src, struct random *r)
     case PATTERN_SHUFFLE:
         return p->bits > 0 ? (src << 1 & mask) | src >> (p->bits - 1) : 0;
     case PATTERN_TORNADO:
-        /* Half way around, less one: the worst case of minimal routing on a ring. */
-        return digits_moved(p, src, (p->radix + 1) / 2 - 1);
     case PATTERN_NEIGHBOUR:
-        return digits_moved(p, src, 1);
+        return digits_moved(p, src);
     case PATTERN_SHIFT:
         return (int)(((int64_t)src + p->distance) % p->nnode);
     case PATTERN_XOR:
@@ -212,6 +257,8 @@ int pattern_destination(const struct pattern *p, int src, struct random *r)
         /* A random node of the next group: all of a group's messages share its one link there. */
         return ((src / p->group + 1) * p->group) % p->nnode +
                (int)random_below(r, (uint64_t)p->group);
+    case PATTERN_HOT_SPOT:
+        return p->spot[random_below(r, (uint64_t)p->nspot)];
     }
     CHECK(false);
     return 0;
@@ -219,7 +266,8 @@ int pattern_destination(const struct pattern *p, int src, struct random *r)
 
 bool pattern_is_random(const struct pattern *p)
 {
-    return p->rule == PATTERN_UNIFORM || p->rule == PATTERN_BAD_GROUP;
+    return p->rule == PATTERN_UNIFORM || p->rule == PATTERN_BAD_GROUP ||
+           p->rule == PATTERN_HOT_SPOT;
 }
 
 /* ---- random loads */

@@ -14,9 +14,11 @@
  *     shift(d)        node i + d mod N
  *     xor(d)          node i xor d                                                N = 2^b
  *     randperm(s)     one permutation of all nodes, drawn with seed s (Fisher-Yates)
- *     badrandom       any node of the next group of a dragonfly; also bad_dragon
+ *     badrandom       any node of the next group of a dragonfly or dragonfly+; also bad_dragon
+ *     hotspot(d,...)  one of these nodes, each equally likely; node 0 if none is named
  *
- * Without (k,n) the numbers are those of a torus or mesh of equal sides. */
+ * Without (k,n) the digits are the coordinates of a torus or mesh, whose routers may have several
+ * nodes; all other nodes stand in one ring. */
 #ifndef NET_PATTERN_H
 #define NET_PATTERN_H
 
@@ -34,17 +36,22 @@ enum pattern_rule {
     PATTERN_SHIFT,
     PATTERN_XOR,
     PATTERN_PERMUTATION,
-    PATTERN_BAD_GROUP
+    PATTERN_BAD_GROUP,
+    PATTERN_HOT_SPOT
 };
 
 /* A pattern with its numbers, for one network. Plain data. */
 struct pattern {
     enum pattern_rule rule;
     int nnode, bits;        /* nodes; log2 of them, rounded up */
-    int radix, ndim;        /* tornado, neighbor */
+    int ndim;               /* tornado, neighbor: digits, */
+    const int *radix;       /* (ndim) their bases; in the arena */
+    int below;              /* nodes that differ in none of them: those of a router */
     int distance;           /* shift, xor */
     int group;              /* nodes in a group of a dragonfly */
     const int *permutation; /* (nnode) randperm; in the arena */
+    const int *spot;        /* (nspot) hotspot; in the arena */
+    int nspot;
 };
 
 /* pattern_read: the pattern that `text` names, for the network t; memory from a.

@@ -197,7 +197,8 @@ static bool is_enough(const struct load_question *q, const struct attempt *x, bo
 {
     const struct steady *s = &x->steady;
     if (!x->judged || is_rising(s) || s->lag > most_lag) return false;
-    return s->half <= q->within * s->mean || (probe && fabs(s->mean - 3 * q->empty_ps) > s->half);
+    return s->half <= q->within * s->mean ||
+           (probe && fabs(s->mean - LOAD_CRITERION * q->empty_ps) > s->half);
 }
 
 /* The length of the first run: enough messages, and time enough for them to get through; no more
@@ -224,17 +225,23 @@ static bool first_length(const struct load_question *q, double offered, double *
     return true;
 }
 
-/* What the last run came to. */
-static void finish(struct attempt *x, bool enough, struct load_point *p)
+/* What the last run came to. Latencies that rise far below those of saturation are of a run that is
+ * too short: a queue that is nearly always busy takes 1 / (1 - load)^2 services to settle, and
+ * accepts all that is offered. */
+static void finish(const struct load_question *q, struct attempt *x, bool enough,
+                   struct load_point *p)
 {
+    const double beyond = LOAD_CRITERION * q->empty_ps - x->steady.mean;
+    const bool rising = x->judged && is_rising(&x->steady);
     p->mean_ps = p->half_ps = p->lag = NAN;
     p->p50_ps = p->p99_ps = p->max_ps = -1;
-    p->status = x->deadlock                           ? LOAD_DEADLOCK
-                : !x->judged || is_rising(&x->steady) ? LOAD_UNSTABLE
-                : enough                              ? LOAD_OK
-                                                      : LOAD_WIDE;
+    p->status = x->deadlock                              ? LOAD_DEADLOCK
+                : !x->judged || (rising && beyond <= 0) ? LOAD_UNSTABLE
+                : enough                                 ? LOAD_OK
+                                                         : LOAD_WIDE;
     if (p->status == LOAD_DEADLOCK) text_copy(p->text, sizeof p->text, x->text);
     if (p->status == LOAD_OK || p->status == LOAD_WIDE) fill_latency(x, p);
+    if (p->status == LOAD_WIDE && rising) p->half_ps = fmax(p->half_ps, beyond);
 }
 
 bool load_measure(const struct load_question *q, double offered, bool probe, struct load_point *p,
@@ -256,7 +263,7 @@ bool load_measure(const struct load_question *q, double offered, bool probe, str
         enough = ok && is_enough(q, &x, probe);
         last =
             !ok || enough || x.deadlock || stuck >= 2 || 2 * cycles * rate_of(q, offered) > q->most;
-        if (last && ok) finish(&x, enough, p);
+        if (last && ok) finish(q, &x, enough, p);
         arena_release(a, mark);
     }
     arena_destroy(a);

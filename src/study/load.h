@@ -11,7 +11,8 @@
  * until the interval is as narrow as asked, or the number of messages would pass the limit. A
  * point has no steady state where of the messages created in the first three quarters more than a
  * tenth, or in two runs in succession any, have not arrived at T, and where the latency still rises
- * in the longest run.
+ * in the longest run and its mean is beyond saturation. A mean that rises below that says nothing
+ * yet: its interval reaches up to saturation.
  *
  * Saturation is the load at which the mean latency is three times that of the empty network, found
  * by bisection; a load counts as decided where the interval does not contain that latency. */
@@ -24,6 +25,8 @@
 #include "net/pattern.h"
 
 enum {
+    LOAD_CRITERION = 3, /* latency at saturation, in latencies of the empty network: the convention
+                           of the reference series (docs/network.md) */
     LOAD_MOST_MESSAGES = 1 << 22, /* of one run, whatever is asked for */
     LOAD_LEAST_MESSAGES = 10000   /* smallest limit that can be asked for */
 };

@@ -6,15 +6,11 @@
 
 static const double finest = 0.01; /* width of the bracket, relative to its upper end */
 
-/* The latency at saturation, in latencies of the empty network: the convention of the reference
- * series (docs/network.md). */
-static const double criterion = 3;
-
 int load_side(const struct load_point *p, double empty_ps)
 {
     if (p->status == LOAD_UNSTABLE || p->status == LOAD_DEADLOCK) return 1;
     /* The interval, not the mean: a mean can cross the line by chance. */
-    double far = p->mean_ps - criterion * empty_ps;
+    double far = p->mean_ps - LOAD_CRITERION * empty_ps;
     return far > p->half_ps ? 1 : far < -p->half_ps ? -1 : 0;
 }
 

@@ -43,9 +43,9 @@ bool netcheck_step(const char *pattern, int distance, int nnode, int flits, stru
 
 /* netcheck_load: random arrivals (Bernoulli per cycle) of packets of `flits` flits for `cycles`
  * cycles at `load` flits per node and cycle, destinations by `pattern`: uniform, bitcomp, bitrev,
- * transpose, shuffle, tornado(k,n), neighbor(k,n), shift(d), xor(d), bad_dragon. The same seed
- * gives the same list. Returns false with ERR_DATA for numbers that do not fit the network, and
- * with ERR_UNAVAILABLE for another pattern. */
+ * transpose, shuffle, tornado(k,n), neighbor(k,n), shift(d), xor(d), bad_dragon, hotspot(d). The
+ * same seed gives the same list. Returns false with ERR_DATA for numbers that do not fit the
+ * network, and with ERR_UNAVAILABLE for another pattern. */
 bool netcheck_load(const char *pattern, const struct topology *t, int flits, double load,
                    int cycles, uint64_t seed, struct arena *a, struct traffic *q, struct err *e);
 

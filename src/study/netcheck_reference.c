@@ -231,10 +231,12 @@ static bool arbitrary(struct netcheck_reader *r, const char *name, struct netche
 /* ---- a case ---- */
 
 /* Cables of the reference's dragonfly take 10 cycles in a group and 100 between groups; one of them
- * is in the router's own time. */
+ * is in the router's own time. Its groups number their global links by the group that they lead to.
+ */
 static void cables(struct topology_spec *s)
 {
     if (s->family != TOPOLOGY_DRAGONFLY) return;
+    s->absolute = true;
     s->dim_latency[0] = 9e-9;
     s->dim_latency[1] = 99e-9;
 }

@@ -3,6 +3,7 @@
  * Prices and the floor plan are the machine file's; what it does not state is not counted. */
 #include "study/network_view.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,7 +107,8 @@ static const struct column view_column[] = {
     {"longest_route", COLUMN_INT, MEASURE(longest_route), .doc = "links of the longest route"},
     {"mean_distance", COLUMN_REAL, MEASURE(mean), .doc = "links, over pairs of different nodes"},
     {"mean_route", COLUMN_REAL, MEASURE(mean_route), .doc = "links of the routes between them"},
-    {"mean_ways", COLUMN_REAL, MEASURE(mean_ways), .doc = "shortest ways, over pairs of routers"},
+    {"mean_ways", COLUMN_REAL, MEASURE(mean_ways),
+     .doc = "shortest ways, over pairs of routers; null: more than 1.8e308"},
     {"metres", COLUMN_REAL, VIEW(metres), .absent = ABSENT_ZERO, .doc = "of cable"},
     {"nodes", COLUMN_INT, MEASURE(nnode), .doc = "with a port to the network each"},
     {"ports", COLUMN_INT64, VIEW(nport), .doc = "of all routers"},
@@ -127,8 +129,10 @@ static void print_distances(const struct topology_measure *m, FILE *out)
     if (fabs(m->mean_route - m->mean) > 1e-9 * m->mean)
         fprintf(out, "%-18s %.6g links, the longest %d\n", "mean route", m->mean_route,
                 m->longest_route);
-    fprintf(out, "%-18s %.4g shortest ways between two routers, %.4g at least\n", "path diversity",
-            m->mean_ways, m->least_ways);
+    /* Between opposite corners of a mesh of 1,024 x 1,024 there are 10^614. */
+    const double most = fmin(m->mean_ways, DBL_MAX), least = fmin(m->least_ways, DBL_MAX);
+    fprintf(out, "%-18s %s%.4g shortest ways between two routers, %.4g at least\n",
+            "path diversity", most < m->mean_ways ? "more than " : "", most, least);
     if (m->sampled)
         fprintf(out, "%-18s distances and ways are measured from %d routers\n", "", m->nsource);
 }

@@ -178,11 +178,11 @@ static void what_does_not_fit_is_told_with_the_job(void **state)
     int low[] = {0, 1, 2}, high[] = {5, 2, 7}, beyond[] = {8, 1, 2}, twice[] = {4, 5, 4};
     static const char *const told[] = {
         "jobs 'a' and 'b' overlap: rank 2 of one and rank 1 of the other on processor 2",
-        "job 'b': placement list: processor 8 of rank 0; expected 0 to 7",
-        "placement list: ranks 0 and 2 on processor 4",
-        "job 'b': placement list names 2 processors for 3 ranks",
+        "job 'b': placement.list: processor 8 of rank 0; expected 0 to 7",
+        "placement.list: ranks 0 and 2 on processor 4",
+        "job 'b': placement.list names 2 processors for 3 ranks",
         "job 'b': 6 ranks, but 5 of the 8 processors of machine test are free",
-        "placement gray needs a hypercube, not a mesh"};
+        "placement.kind gray needs a hypercube, not a mesh"};
     for (int k = 0; k < 6; k++) {
         struct case_of_jobs c = on(TOPOLOGY_MESH, 1, dims, 1, 1);
         add(&c, 3, PLACEMENT_LIST, low, 3);

@@ -45,7 +45,28 @@ static const struct topology_spec small[] = {
      .nlink = 15,
      .link = (int (*)[2])petersen},
 };
-enum { SMALL = sizeof small / sizeof *small, CHANNELS = 8, CHOICES = 60 };
+/* The other families, and other ways on some of the above. */
+static int two[] = {2, 1}, one[] = {1};
+static const struct topology_spec other[] = {
+    {.family = TOPOLOGY_SLIM_FLY, .ndim = 1, .dims = {3}, ONE},
+    {.family = TOPOLOGY_DRAGONFLY_PLUS, .ndim = 5, .dims = {1, 2, 2, 1, 3}, ONE},
+    {.family = TOPOLOGY_FOLDED_CLOS, .ndim = 2, .dims = {2, 4}, .nup = 1, .up = two, ONE},
+    {.family = TOPOLOGY_EXPRESS_MESH, .ndim = 2, .dims = {5, 3}, .express = 2, ONE},
+    {.family = TOPOLOGY_EXPRESS_TORUS, .ndim = 2, .dims = {4, 4}, .express = 2, ONE},
+    {.family = TOPOLOGY_TWISTED_TORUS, .ndim = 2, .dims = {4, 3}, .ntwist = 1, .twist = one, ONE},
+    {.family = TOPOLOGY_RANDOM_REGULAR, .ndim = 2, .dims = {10, 3}, .seed = 3, ONE},
+    {.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {3, 3}, .nbundle = 2, .bundle = two, ONE},
+    {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 4, 2, 4}, ONE},
+    {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 3, 1, 0}, .routing = ROUTE_VALIANT, ONE},
+    {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {2, 3}, .routing = ROUTE_VALIANT, ONE},
+};
+enum {
+    SMALL = sizeof small / sizeof *small,
+    OTHER = sizeof other / sizeof *other,
+    CHANNELS = 8,
+    MANY_CHANNELS = 20,
+    CHOICES = 60
+};
 
 static struct topology *make(const struct topology_spec *s, struct arena *a)
 {
@@ -141,16 +162,17 @@ static bool may_deadlock(const struct routing *r, int escape, bool merge, struct
     return false;
 }
 
-/* call `check` with every rule on every small network that it is for */
-static void on_all(void (*check)(const struct routing *, struct arena *), int *count)
+/* call `check` with every rule on every network of a list that it is for */
+static void on_each(const struct topology_spec *list, int nlist, int channels,
+                    void (*check)(const struct routing *, struct arena *), int *count)
 {
-    for (int i = 0; i < SMALL; i++)
+    for (int i = 0; i < nlist; i++)
         for (int rule = 0; rule < ROUTING_RULES; rule++) {
             struct arena *a = arena_create();
             struct err e;
             err_clear(&e);
             const struct routing *r =
-                routing_create(make(&small[i], a), (enum routing_rule)rule, CHANNELS, a, &e);
+                routing_create(make(&list[i], a), (enum routing_rule)rule, channels, a, &e);
             if (r) {
                 check(r, a);
                 ++*count;
@@ -160,6 +182,11 @@ static void on_all(void (*check)(const struct routing *, struct arena *), int *c
             }
             arena_destroy(a);
         }
+}
+
+static void on_all(void (*check)(const struct routing *, struct arena *), int *count)
+{
+    on_each(small, SMALL, CHANNELS, check, count);
 }
 
 static void check_free(const struct routing *r, struct arena *a)
@@ -183,6 +210,8 @@ static void no_rule_can_deadlock(void **state)
     int count = 0;
     on_all(check_free, &count);
     assert_int_equal(count, 117);
+    on_each(other, OTHER, MANY_CHANNELS, check_free, &count);
+    assert_int_equal(count, 117 + 64);
 }
 
 /* The same test sees rules that can: without channels to tell apart, and without an escape. */
@@ -382,6 +411,59 @@ static void only_deterministic_routes_go_around_failures(void **state)
     arena_destroy(a);
 }
 
+/* One packet by a rule as it is, and by the same that keeps what it asks for often. */
+static void walk_both(const struct routing *plain, const struct routing *kept, int src, int dst,
+                      uint64_t choice)
+{
+    const struct routing_view view = {some_load, &choice};
+    struct route_option x[ROUTING_MOST_OPTIONS], y[ROUTING_MOST_OPTIONS];
+    struct route p = routing_start(plain, src, dst, choice), q = p;
+    int first, n;
+    assert_int_equal(routing_inject(plain, &p, &first), routing_inject(kept, &q, &first));
+    while ((n = routing_next(plain, &p, &view, x)) > 0) {
+        assert_int_equal(routing_next(kept, &q, &view, y), n);
+        for (int i = 0; i < n; i++) {
+            assert_int_equal(x[i].link, y[i].link);
+            assert_int_equal(x[i].first, y[i].first);
+            assert_int_equal(x[i].count, y[i].count);
+            assert_int_equal(x[i].priority, y[i].priority);
+        }
+        const int i = (int)(choice % (uint64_t)n);
+        routing_take(plain, &p, &x[i], x[i].first);
+        routing_take(kept, &q, &y[i], y[i].first);
+    }
+    assert_int_equal(routing_next(kept, &q, &view, y), 0);
+}
+
+static void check_kept(const struct routing *r, struct arena *a)
+{
+    const struct topology *t = r->topology;
+    struct err e;
+    err_clear(&e);
+    struct routing *kept = routing_create(t, r->rule, r->channels, a, &e);
+    assert_non_null(kept);
+    routing_keep(kept, a);
+    for (int src = 0; src < t->nnode; src++)
+        for (int dst = 0; dst < t->nnode; dst++)
+            for (uint64_t choice = 0; choice < CHOICES / 4; choice++)
+                walk_both(r, kept, src, dst, choice);
+}
+
+/* Also where the next link depends on more than a pair of routers: of parallel links. */
+static void what_is_kept_changes_no_answer(void **state)
+{
+    static int cables[] = {1, 2};
+    static const struct topology_spec parallel[] = {
+        {.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {3, 2}, .nbundle = 2, .bundle = cables, ONE},
+        {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 4, 2, 4}, ONE},
+    };
+    int count = 0;
+    (void)state;
+    on_all(check_kept, &count);
+    on_each(parallel, sizeof parallel / sizeof *parallel, CHANNELS, check_kept, &count);
+    assert_true(count > 30);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -392,6 +474,7 @@ int main(void)
         cmocka_unit_test(ugal_leaves_a_link_that_is_full),
         cmocka_unit_test(packets_leave_over_the_channels_of_their_rule),
         cmocka_unit_test(numbers_that_do_not_fit_are_refused),
+        cmocka_unit_test(what_is_kept_changes_no_answer),
         cmocka_unit_test(only_deterministic_routes_go_around_failures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -311,6 +311,32 @@ static void the_mean_route_of_a_dragonfly_is_the_reference_s(void **state)
     arena_destroy(a);
 }
 
+/* Group 3 of 9 with four routers of two global links: its own number is left out of the order.
+ * Relative numbers begin with the next group. */
+static void absolute_numbers_lead_to_the_groups_in_order(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct topology_spec s = {.family = TOPOLOGY_DRAGONFLY,
+                              .ndim = 4,
+                              .dims = {2, 4, 2, 0},
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1};
+    static const int leads[2][8] = {{4, 5, 6, 7, 8, 0, 1, 2}, {0, 1, 2, 4, 5, 6, 7, 8}};
+    for (int absolute = 0; absolute < 2; absolute++) {
+        s.absolute = absolute;
+        const struct topology *t = make(&s, a);
+        const int first = t->nlink - 72 + 3 * 8;
+        for (int q = 0; q < 8; q++) {
+            int from, to, port;
+            topology_link_ends(t, first + q, &from, &to, &port);
+            assert_int_equal(from, 3 * 4 + q / 2);
+            assert_int_equal(to / 4, leads[absolute][q]);
+        }
+    }
+    arena_destroy(a);
+}
+
 static void shifts_on_a_fat_tree_share_no_link(void **state)
 {
     (void)state;
@@ -468,6 +494,7 @@ int main(void)
         cmocka_unit_test(ties_may_be_broken_by_chance),
         cmocka_unit_test(a_million_nodes_route_by_arithmetic),
         cmocka_unit_test(the_mean_route_of_a_dragonfly_is_the_reference_s),
+        cmocka_unit_test(absolute_numbers_lead_to_the_groups_in_order),
         cmocka_unit_test(shifts_on_a_fat_tree_share_no_link),
         cmocka_unit_test(rates_belong_to_dimensions),
         cmocka_unit_test(links_of_a_graph_have_rates_there_and_back),

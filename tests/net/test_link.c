@@ -429,7 +429,8 @@ static void messages_that_wait_for_each_other_are_reported(void **state)
         .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
         .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
-    struct traffic q = {3, src, dst, bytes, zero, zero, first, dep, 0};
+    struct traffic q = {.nmessage = 3, .src = src, .dst = dst, .bytes = bytes,
+                        .time = zero, .delay = zero, .dep_first = first, .dep = dep};
     struct arena *a = arena_create();
     struct err e;
     err_clear(&e);

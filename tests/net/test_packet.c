@@ -170,19 +170,19 @@ static void buffers_too_small_are_refused(void **state)
     (void)state;
     struct bench b;
     bench_open(&b, "mesh4x4", 1, 4);
-    refused(&b, "network.buffer_flits", "at least 5");
+    refused(&b, "network.buffer", "at least 5");
     b.machine.network.buffer_flits = 16;
     b.machine.network.packet_bytes = 17 * 16;
-    refused(&b, "network.packet_bytes", "buffer_flits >= 17");
+    refused(&b, "network.packet", "buffer >= 17");
     b.machine.network.packet_bytes = 16 * 16;
     b.machine.network.header_bytes = 8;
-    refused(&b, "network.header_bytes", "packet_bytes <= 248");
+    refused(&b, "network.header", "packet <= 248");
     b.machine.network.header_bytes = 0;
     b.machine.network.virtual_channels = 0;
     refused(&b, "network.virtual_channels", "1 to");
     b.machine.network.virtual_channels = 1;
     b.machine.network.flit_bytes = 0;
-    refused(&b, "network.flit_bytes", "at least 1 B");
+    refused(&b, "network.flit", "at least 1 B");
     arena_destroy(b.arena);
 }
 

@@ -58,7 +58,7 @@ static void destinations_are_those_of_the_definitions(void **state)
     } list[] = {
         {"bitcomp", 0, 15}, {"bitcomp", 5, 10},      {"bitrev", 1, 8},       {"bitrev", 6, 6},
         {"bitrev", 11, 13}, {"transpose", 1, 4},     {"transpose", 6, 9},    {"transpose", 15, 15},
-        {"shuffle", 5, 10}, {"shuffle", 9, 3},       {"tornado(4,2)", 0, 5}, {"tornado(4,2)", 3, 4},
+        {"shuffle", 5, 10}, {"shuffle", 9, 3},       {"tornado4_2", 0, 5},   {"tornado(4,2)", 3, 4},
         {"tornado", 15, 0}, {"neighbor(4,2)", 0, 5}, {"neighbor", 7, 8},     {"shift(3)", 14, 1},
         {"xor(6)", 5, 3},   {"tornado(16,1)", 0, 7},
     };
@@ -71,6 +71,64 @@ static void destinations_are_those_of_the_definitions(void **state)
             fail_msg("%s: %d to %d, not %d", list[i].text, list[i].from, to, list[i].to);
         assert_false(pattern_is_random(&p));
     }
+}
+
+/* Without numbers: coordinates of their own, also of routers with two nodes each; elsewhere a ring
+ * of all nodes. By hand. */
+static void digits_are_those_of_the_network(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *network, *text;
+        int per_router, from, to;
+    } list[] = {
+        {"mesh4x8", "tornado", 1, 0, 1 + 4 * 3},
+        {"mesh4x8", "tornado", 1, 31, 0 + 4 * 2},
+        {"mesh4x8", "neighbor", 1, 31, 0},
+        {"torus3x4", "tornado", 1, 2, 0 + 3 * 1},
+        {"mesh4x8", "tornado", 2, 1, 3 + 8 * 3},
+        {"mesh4x8", "neighbor", 2, 62, 0},
+        {"hcube4", "tornado", 1, 3, 10},
+        {"hcube4", "neighbor", 1, 15, 0},
+        {"dragonfly_p2a4h2", "tornado", 1, 40, 3},
+        {"dragonfly_p2a4h2", "neighbor", 1, 71, 0},
+        {"dragonfly_p2a4h2", "hotspot", 1, 40, 0},
+        {"mesh4x4", "hotspot(15)", 1, 3, 15},
+        {"dragonfly_p2a4h2", "tornado(8,1)", 1, -1, 0},
+    };
+    struct random r = random_make(1, 2, 3);
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        struct topology_spec s = *network(list[i].network)->spec;
+        struct err e;
+        struct pattern p;
+        err_clear(&e);
+        if (list[i].per_router > 1) s.nodes_per_router = list[i].per_router;
+        const struct topology *t = topology_create(&s, arena, &e);
+        assert_non_null(t);
+        if (list[i].from < 0) {
+            assert_false(pattern_read(&p, list[i].text, t, arena, &e));
+            continue;
+        }
+        p = read(list[i].text, t);
+        const int to = pattern_destination(&p, list[i].from, &r);
+        if (to != list[i].to)
+            fail_msg("%s %s: %d to %d, not %d", list[i].network, list[i].text, list[i].from, to,
+                     list[i].to);
+    }
+}
+
+/* Each of the named nodes as often as it is named, nobody else. */
+static void hot_spots_are_hit_as_often_as_named(void **state)
+{
+    (void)state;
+    struct pattern p = read("hotspot(3, 9, 9, 0)", network("mesh4x4"));
+    struct random r = random_make(1, 2, 3);
+    int hit[16] = {0};
+    assert_true(pattern_is_random(&p));
+    for (int k = 0; k < 4000; k++) hit[pattern_destination(&p, k % 16, &r)]++;
+    assert_in_range(hit[3], 880, 1120);
+    assert_in_range(hit[0], 880, 1120);
+    assert_int_equal(hit[0] + hit[3] + hit[9], 4000);
 }
 
 static void permutations_reach_every_node_once(void **state)
@@ -138,11 +196,17 @@ static void mistakes_are_told(void **state)
         {"mesh4x4", "unifrom", "did you mean 'uniform'?", ERR_DATA},
         {"mesh4x4", "spiral",
          "known: uniform, bitcomp, bitrev, transpose, shuffle, tornado, neighbor, shift, xor, "
-         "randperm, bad_dragon",
+         "randperm, bad_dragon, hotspot",
          ERR_UNAVAILABLE},
         {"mesh3x4", "transpose", "needs 2^n nodes, not 12", ERR_DATA},
-        {"hcube4", "tornado", "its radix is missing", ERR_DATA},
-        {"mesh4x8", "tornado", "2 digits to the base 4 do not number 32 nodes", ERR_DATA},
+        {"hcube4", "tornado(4,3)", "3 digits to the base 4 do not number 16 nodes", ERR_DATA},
+        {"mesh4x8", "tornado(4)", "2 digits to the base 4 do not number 32 nodes", ERR_DATA},
+        {"mesh4x4", "neighbor(1,40)", "40 digits to the base 1", ERR_DATA},
+        {"mesh4x4", "hotspot(16)", "expected nodes below 16", ERR_DATA},
+        {"mesh4x4", "hotspot(1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1)", "at most 16 nodes", ERR_DATA},
+        {"mesh4x4", "hotspot(-1)", "expected whole numbers in brackets", ERR_DATA},
+        {"mesh4x4", "hotspot(1,2,", "expected whole numbers in brackets", ERR_DATA},
+        {"mesh4x4", "shift(1.5)", "expected whole numbers in brackets", ERR_DATA},
         {"mesh4x4", "shift", "its distance is missing", ERR_DATA},
         {"mesh4x4", "shift(16)", "expected a distance below the 16 nodes", ERR_DATA},
         {"mesh4x4", "xor(99999999999)", "expected a distance below the 16 nodes", ERR_DATA},
@@ -263,6 +327,18 @@ static void channel_loads_of_chance_are_near_their_means(void **state)
     assert_true(fabs(pattern_channel_load(&far, t, 64, 1e9, arena) - 8) < 1e-9);
     double load = pattern_channel_load(&shift, tree, 4000, 1e9, arena);
     assert_true(load > 1 && load < 1.1);
+    /* A dragonfly+ with two nodes on each of two leaves, one link between groups: four share it. */
+    const struct topology_spec plus = {.family = TOPOLOGY_DRAGONFLY_PLUS,
+                                       .ndim = 5,
+                                       .dims = {2, 2, 2, 1, 3},
+                                       .nodes_per_router = 1,
+                                       .processors_per_node = 1};
+    struct err e;
+    err_clear(&e);
+    const struct topology *groups = topology_create(&plus, arena, &e);
+    assert_non_null(groups);
+    struct pattern next = read("badrandom", groups);
+    assert_true(fabs(pattern_channel_load(&next, groups, 64, 1e9, arena) - 4) < 1e-9);
     /* too many messages to follow; no links at all */
     assert_true(pattern_channel_load(&far, t, 1 << 22, 1e9, arena) == 0);
     const struct topology *bar = network("crossbar16");
@@ -291,6 +367,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(destinations_are_those_of_the_definitions),
+        cmocka_unit_test(digits_are_those_of_the_network),
+        cmocka_unit_test(hot_spots_are_hit_as_often_as_named),
         cmocka_unit_test(permutations_reach_every_node_once),
         cmocka_unit_test(drawn_permutations_differ_by_their_seed),
         cmocka_unit_test(chance_stays_where_it_belongs),
