@@ -13,7 +13,6 @@
 #include "plan/file_kind.h"
 #include "study/audit.h"
 #include "study/model_file.h"
-#include "study/network_file.h"
 #include "study/probe.h"
 
 /* The text before \v stands above the options in --help, the rest below them (argp). */
@@ -189,9 +188,9 @@ static bool check_file(const struct common *c, const char *file, const struct au
         return fine;
     }
     const bool model = model_file_is(file);
-    /* Models are built, scenarios and machines read: nothing is run in either case. */
+    /* Models are built, and the networks of scenarios and machines: nothing is run in any case. */
     const bool fine = model ? model_file_check(file, c->quiet ? NULL : stderr, e)
-                            : plan_check_file(file, &o, e) && network_file_check(file, &o, e);
+                            : plan_check_file(file, &o, e);
     if (fine && !c->quiet && !c->json) printf("%s: ok\n", file);
     if (fine && !c->quiet && !model) tell_steps_down(file);
     return fine;

@@ -121,7 +121,8 @@ static bool make_runs(struct request *r, const struct plan *p, struct run_spec *
     struct keep k = {s, e};
     return run_campaign(run, order, p->nrun, skip, r->common->jobs, r->common->quiet, keep_result,
                         &k, e) &&
-           e->kind == ERR_NONE && known_error_note(s, run, p->nrun, e) && store_swept_view(s, e);
+           e->kind == ERR_NONE && known_error_note(s, NULL, run, p->nrun, e) &&
+           store_swept_view(s, e);
 }
 
 /* What side number `side` will run: a scenario; on `machine`, unless it is NULL. Nothing is run or

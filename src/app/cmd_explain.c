@@ -425,11 +425,14 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
 /* Points that cannot run have no estimate; they are counted and the first reason is told. */
 static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
 {
-    for (int i = 0; i < p->nrun; i++)
-        if (!p->run[i].refused && !run_explain(&p->run[i], &r[i], e)) return false;
-    if (p->nrefused > 0)
+    const char *first = NULL;
+    for (int i = 0; i < p->nrun; i++) {
+        if (p->run[i].refused) first = first ? first : p->run[i].refused;
+        else if (!run_explain(&p->run[i], &r[i], e)) return false;
+    }
+    if (first)
         fprintf(stderr, "mimdsim: %d of %d points cannot run; the first: %s\n", p->nrefused,
-                p->nrun, p->refusal.text);
+                p->nrun, first);
     return true;
 }
 

@@ -17,7 +17,7 @@ static const char doc[] =
     "Latency counts from the creation of a message to its last flit, with the wait at the source; "
     "the time of the message software is left out, unless --software is given. "
     "Traffic: uniform, bitcomp, bitrev, transpose, shuffle, tornado(k,n), neighbor(k,n), shift(d), "
-    "xor(d), randperm(seed), badrandom (of dragonflies), or "
+    "xor(d), randperm(seed), badrandom (of dragonflies), hotspot(d,...), or "
     "DATABASE:RUN, the messages of a stored run with spans, again and again, as much faster or "
     "slower "
     "as the load asks for. Without --level and --routing they are "

@@ -30,7 +30,7 @@ static const char doc[] =
     "Example: mimdsim paper\n"
     "         mimdsim paper fig7         one figure with its runs\n"
     "\vRuns that are stored already are not repeated, unless --force is given.\n"
-    "--paper-only: omit the five scenes; this takes less than half the time.";
+    "--paper-only: omit the five scenes; this takes two thirds of the time.";
 
 enum { MOST_PLANS = 64, MOST_FIGURES = 128 }; /* scenarios; figures of the report */
 

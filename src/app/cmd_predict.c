@@ -14,7 +14,7 @@
 #include "app/arguments.h"
 #include "app/flag.h"
 #include "app/verb.h"
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/sorted.h"
 #include "reality/predict.h"
 #include "spec/task.h"
@@ -304,11 +304,10 @@ static bool predict_all(struct summary *s, const struct plan *p, struct err *e)
 int cmd_predict(int argc, char **argv)
 {
     struct common c;
-    struct summary *s = calloc(1, sizeof *s);
+    struct summary *s = memory_zeroed(1, sizeof *s);
     struct plan p = {0};
     struct err e;
     err_clear(&e);
-    CHECK(s != NULL);
     s->c = &c;
     s->stages = take_flag(&argc, argv, "--stages");
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE, "SCENARIO|PROGRAM", doc, 1, 1);

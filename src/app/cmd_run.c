@@ -68,6 +68,7 @@ static const char doc[] =
 struct keep {
     struct store *store;
     struct err *error;
+    struct identity *by; /* owned, of the plan's runs */
     /* (the plan's number) the runs that are made, and how each is executed */
     const struct run_spec *run;
     struct run_order *order; /* in step with `run` */
@@ -320,7 +321,7 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     else if (ok)
         ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     /* What is known of the errors, before the rows are shown. */
-    ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
+    ok = ok && known_error_note(k->store, k->by, k->run, p->nrun, e) &&
          store_swept_view(k->store, e) && store_publish(k->store, e);
     if (ok && k->whole) atomic_fetch_add(&k->interrupt.stored, k->done);
     interrupt_end(&k->interrupt);
@@ -397,6 +398,7 @@ int cmd_run(int argc, char **argv)
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e,
+                     .by = o.identity = identity_of_runs(),
                      .quiet = c.quiet,
                      .limit = asked.limit,
                      .keep_all = asked.keep_all,
@@ -414,5 +416,6 @@ int cmd_run(int argc, char **argv)
     store_close(k.store);
     const bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);
+    identity_destroy(k.by);
     return job_end(&job, exit_status(ok, &k, none, &c, &e));
 }

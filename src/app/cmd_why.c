@@ -173,7 +173,7 @@ static bool put_all(const struct common *c, const struct run_spec *spec, const s
     /* A run that is stored already keeps its row; only its explanation is replaced. */
     bool ok =
         s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) &&
-        known_error_note(s, spec, 1, e) && store_begin(s, e);
+        known_error_note(s, NULL, spec, 1, e) && store_begin(s, e);
     if (ok) {
         const int64_t run = store_run_id(s, spec);
         ok = put_shares(s, run, w, e) && put_parameters(s, run, w, e) &&

@@ -12,6 +12,7 @@
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
+#include "run/run.h"
 
 /* Keys of long options without a letter. */
 enum {
@@ -330,6 +331,7 @@ struct plan_options common_plan(const struct common *c)
                                  .nkernel = c->kernel.n,
                                  .kernel = c->kernel.name,
                                  .program = programs_sheet,
+                                 .fits = run_fits,
                                  .allow_programs = c->allow_programs,
                                  .only = c->only};
 }

@@ -278,6 +278,7 @@ bool explain_claims(const struct common *c, const struct claim_rules *rules, uin
                                      .e = e};
     run_cache_repeat(q.bench.cache, true);
     bool ok = inquire(&q);
+    store_close(q.bench.passing);
     run_cache_destroy(q.bench.cache);
     arena_destroy(q.bench.arena);
     return ok;

@@ -280,7 +280,6 @@ struct batch {
     const struct explain_request *request; /* (n) the points, in their order */
     struct run_spec *spec; /* (nspec) the runs of all points */
     int *of, nspec, kept; /* of: (nspec + 1) whose runs they are */
-    struct store *passing; /* the runs of one point at a time */
     struct explain_point *point; /* in the making */
     struct text runs; /* their hashes, for table explain_point */
     bool keep; /* false: for a look, nothing is stored */
@@ -348,15 +347,6 @@ static bool keep_point(struct batch *t)
     return ok;
 }
 
-/* The next point begins without runs. Deleting them takes less time than making a database anew. */
-static bool empty(struct store *s, struct err *e)
-{
-    static const char *const status[] = {"ok", "invalid", "deadlock", "failed"};
-    for (int i = 0; i < 4; i++)
-        if (!store_delete(s, "run", "status", store_text(status[i]), e)) return false;
-    return true;
-}
-
 /* All runs of a point are there: judge it, store it, and empty the database for the next one. */
 static bool finish_point(struct batch *t)
 {
@@ -368,9 +358,9 @@ static bool finish_point(struct batch *t)
     p->operators = q->operators;
     memcpy(p->u, q->u, sizeof p->u);
     for (int i = 0; i < q->subject->nrule; i++)
-        if (!claims_judge(q->subject->rule[i], t->passing, "explored", judge_variant, t, b->e))
+        if (!claims_judge(q->subject->rule[i], b->passing, "explored", judge_variant, t, b->e))
             return false;
-    if (!empty(t->passing, b->e)) return false;
+    if (!store_clear(b->passing, b->e)) return false;
     /* A look (explain_confirm) uses other runs: its point must not be mixed with those of the
      * search. */
     if (t->keep) {
@@ -388,12 +378,10 @@ static bool finish_point(struct batch *t)
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct batch *t = context;
+    struct explain_bench *b = t->bench;
     int mine = t->of[t->kept]; /* the point that this run belongs to */
-    if (!t->passing) {
-        t->passing = store_open("points", STORE_MEMORY, t->bench->e);
-        if (!t->passing) return false;
-    }
-    if (!store_put(t->passing, spec, NULL, r, t->bench->e)) return false;
+    if (!b->passing) b->passing = store_open("points", STORE_MEMORY, b->e);
+    if (!b->passing || !store_put(b->passing, spec, NULL, r, b->e)) return false;
     text_add(&t->runs, "%s%.12s", t->runs.length ? " " : "", spec->config_hash);
     t->kept++;
     return t->of[t->kept] == mine || finish_point(t);
@@ -419,7 +407,6 @@ static bool run_batch(struct batch *t)
     struct explain_bench *b = t->bench;
     bool ok =
         run_campaign_again(t->spec, t->nspec, b->common->jobs, b->cache, keep_result, t, b->e);
-    store_close(t->passing);
     text_free(&t->runs);
     return ok;
 }

@@ -57,6 +57,7 @@ struct explain_request {
 struct explain_bench {
     const struct common *common;
     struct store *store;
+    struct store *passing; /* the runs of one point at a time, NULL until the first */
     struct arena *arena; /* of all subjects and points */
     struct err *e;
     struct run_cache *cache; /* what runs of all points share, owned by who makes the bench */

@@ -4,6 +4,7 @@
  * but for their size: the digest of what they have in common is kept with each run. */
 #include "app/known_error.h"
 
+#include "spec/identity.h"
 #include "study/level_choice.h"
 
 /* A run keeps its family: it is made once. */
@@ -27,22 +28,26 @@ static bool is_noted(struct store *s, int64_t id, bool *there, struct err *e)
 }
 
 /* In one transaction: a plan may have thousands of runs. */
-bool known_error_note(struct store *s, const struct run_spec *run, int n, struct err *e)
+bool known_error_note(struct store *s, struct identity *by, const struct run_spec *run, int n,
+                      struct err *e)
 {
     static const char *const name[] = {"run_id", "family"};
-    bool ok = store_begin(s, e);
-    if (!ok) return false;
+    if (!store_begin(s, e)) return false;
+    /* Runs of one plan are alike in most of what makes a family. */
+    struct identity *own = by == NULL ? identity_of_runs() : NULL;
+    bool ok = true;
     for (int i = 0; i < n && ok; i++) {
         const int64_t id = store_run_id(s, &run[i]);
         bool there;
         ok = id == 0 || is_noted(s, id, &there, e);
         if (!ok || id == 0 || there) continue;
-        /* a hash of the whole configuration: some 50 us */
+        /* a hash of the whole configuration */
         char family[65];
-        level_family(&run[i], family);
+        level_family_by(by != NULL ? by : own, &run[i], family);
         const struct store_value value[] = {store_int(id), store_text(family)};
         ok = store_insert(s, "run_family", 2, name, value, e);
     }
+    identity_destroy(own);
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;

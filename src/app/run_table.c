@@ -39,19 +39,18 @@ struct shown {
     " OR (r.status = 'failed' AND EXISTS (SELECT 1 FROM run q WHERE q.kernel = r.kernel AND q.nu " \
     "> 0))"
 
-/* Which run it is. %s of message: whether messages are swept; else only micro-benchmarks have a
- * size. */
+/* The size of a message: of all runs where it is swept, else of micro-benchmarks. */
+#define MESSAGE "(SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message')"
+
+/* Which run it is. What depends on the plan is written where a plan is known (plan_sql). */
 static const struct shown before[] = {
     {"machine", "r.label", BOTH},
     {"kernel", "r.kernel", BOTH},
     {"formulation", "iif(r.nu > 0, r.formulation, NULL)", BOTH},
     {"solver", "iif(r.nu > 0, r.solver, NULL)", BOTH},
-    {"message",
-     "iif(%s, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message'), "
-     "NULL)",
-     BOTH},
+    {"message", NULL, BOTH},
     {"level", "r.level", BOTH},
-    {"n", "iif(" HAS_N ", r.n, NULL)", BOTH},
+    {"n", NULL, BOTH},
     {"P", "r.P", BOTH},
 };
 
@@ -161,23 +160,29 @@ static void add_swept(struct columns *c, const struct plan *p, int at)
     text_free(&sql);
 }
 
+/* Columns of before[] that say something of some programs alone. Where all runs have a scene, each
+ * has an n and none measures messages; to ask the rows would be a third of what the query takes. */
+static const char *plan_sql(const struct plan *p, const char *name)
+{
+    bool swept = false, scenes = true;
+    for (int i = 0; i < p->nswept; i++)
+        swept = swept || strcmp(p->swept[i].key, "kernel.message") == 0;
+    for (int i = 0; i < p->nrun; i++)
+        scenes = scenes && kernel_spec_needs_model(&p->run[i].kernel);
+    if (strcmp(name, "n") == 0) return scenes ? "r.n" : "iif(" HAS_N ", r.n, NULL)";
+    return swept    ? MESSAGE
+           : scenes ? "NULL"
+                    : "iif(r.measured_s IS NOT NULL, " MESSAGE ", NULL)";
+}
+
 /* All columns there are for a plan: which run, what is swept, repetitions, results. */
 static void list_columns(struct columns *c, const struct plan *p)
 {
-    bool message = false, repeated = false;
-    for (int i = 0; i < p->nswept; i++)
-        message = message || strcmp(p->swept[i].key, "kernel.message") == 0;
+    bool repeated = false;
     for (int i = 0; i < p->nrun; i++) repeated = repeated || p->run[i].rep > 0;
-    for (int i = 0; i < BEFORE; i++) {
-        struct text sql = {0};
-        /* one text holds a %s, the others none */
-        if (strcmp(before[i].name, "message") == 0)
-            text_add(&sql, "iif(%s%s", message ? "1" : "r.measured_s IS NOT NULL",
-                     before[i].sql + 6);
-        else text_add(&sql, "%s", before[i].sql);
-        add(c, before[i].name, arena_text(c->arena, sql.s), before[i].whom);
-        text_free(&sql);
-    }
+    for (int i = 0; i < BEFORE; i++)
+        add(c, before[i].name, before[i].sql != NULL ? before[i].sql : plan_sql(p, before[i].name),
+            before[i].whom);
     for (int i = 0; i < p->nswept && i < MOST_SWEPT; i++)
         if (!is_one_of(p->swept[i].key, always, sizeof always / sizeof *always)) add_swept(c, p, i);
     if (repeated) add(c, "rep", "r.rep", BOTH);

@@ -183,12 +183,9 @@ static bool keep_settings(struct sampler *p, int sample)
 /* All runs of a sample are there: judge all claims by them, then forget the runs. */
 static bool finish_sample(struct sampler *p, int sample)
 {
-    if (!store_commit(p->passing, p->e) ||
-        !claims_sample(p->rules, p->passing, p->store, sample, p->e))
-        return false;
-    store_close(p->passing);
-    p->passing = NULL;
-    return true;
+    return store_commit(p->passing, p->e) &&
+           claims_sample(p->rules, p->passing, p->store, sample, p->e) &&
+           store_clear(p->passing, p->e);
 }
 
 /* Results come in the order of the runs, whatever worker made them: a sample is complete when
@@ -197,10 +194,9 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
 {
     struct sampler *p = context;
     int sample = p->sample_of[p->kept];
-    if (!p->passing) {
-        p->passing = store_open("samples", STORE_MEMORY, p->e);
-        if (!p->passing || !store_begin(p->passing, p->e)) return false;
-    }
+    const bool first = p->kept == 0 || p->sample_of[p->kept - 1] != sample;
+    if (!p->passing) p->passing = store_open("samples", STORE_MEMORY, p->e);
+    if (!p->passing || (first && !store_begin(p->passing, p->e))) return false;
     if (!store_put(p->passing, spec, NULL, r, p->e)) return false;
     p->kept++;
     return p->sample_of[p->kept] == sample || finish_sample(p, sample);

@@ -21,6 +21,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/whole.h"
 
 static const char middle[] = BESIDE_MIDDLE, ending[] = BESIDE_ENDING, journal[] = "-journal";
 enum { DRAWN = 6 };
@@ -167,11 +168,6 @@ bool beside_write(const char *path, const void *data, size_t size, struct err *e
 {
     struct beside b;
     if (!beside_begin(&b, path, e)) return false;
-    /* write may take less than it is given. */
-    for (size_t done = 0; done < size && b.why == 0;) {
-        ssize_t n = write(fileno(b.out), (const char *)data + done, size - done);
-        if (n > 0) done += (size_t)n;
-        else if (n == 0 || errno != EINTR) b.why = n == 0 ? ENOSPC : errno;
-    }
+    if (!write_whole(fileno(b.out), data, size)) b.why = errno;
     return beside_end(&b, true, e);
 }

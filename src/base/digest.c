@@ -24,37 +24,48 @@ static uint32_t rotate_right(uint32_t x, int k)
     return (x >> k) | (x << (32 - k));
 }
 
-/* sha256_schedule: the 64 words of one block (6.2.2, step 1). */
-static void sha256_schedule(const unsigned char *block, uint32_t w[64])
+/* The word at `p`: its highest byte comes first. */
+static uint32_t word_at(const unsigned char *p)
 {
-    for (int t = 0; t < 16; t++) {
-        const unsigned char *p = block + 4 * t;
-        w[t] = (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-    }
-    for (int t = 16; t < 64; t++) {
-        uint32_t a = w[t - 15], b = w[t - 2];
-        uint32_t s0 = rotate_right(a, 7) ^ rotate_right(a, 18) ^ (a >> 3);
-        uint32_t s1 = rotate_right(b, 17) ^ rotate_right(b, 19) ^ (b >> 10);
-        w[t] = s1 + w[t - 7] + s0 + w[t - 16];
-    }
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
+}
+
+/* One of the words behind the first 16 of the schedule (6.2.2, step 1); each takes the place of the
+ * one 16 before it, which no later one needs. */
+static inline uint32_t next_word(uint32_t w[16], int t)
+{
+    const uint32_t a = w[(t + 1) & 15], b = w[(t + 14) & 15];
+    const uint32_t s0 = rotate_right(a, 7) ^ rotate_right(a, 18) ^ (a >> 3);
+    const uint32_t s1 = rotate_right(b, 17) ^ rotate_right(b, 19) ^ (b >> 10);
+    return w[t & 15] += s1 + w[(t + 9) & 15] + s0;
+}
+
+/* Round k of 8 (6.2.2, step 3); `add` is its constant and its word. The working variables a .. h
+ * stand in v; where the standard moves all of them by one place, the place of `a` moves, and is
+ * back after eight rounds. */
+static inline void round_of(uint32_t v[8], int k, uint32_t add)
+{
+#define V(i) v[((i)-k) & 7]
+    const uint32_t a = V(0), e = V(4);
+    const uint32_t s1 = rotate_right(e, 6) ^ rotate_right(e, 11) ^ rotate_right(e, 25);
+    const uint32_t t1 = V(7) + s1 + ((e & V(5)) ^ (~e & V(6))) + add;
+    const uint32_t s0 = rotate_right(a, 2) ^ rotate_right(a, 13) ^ rotate_right(a, 22);
+    V(3) += t1;
+    V(7) = t1 + s0 + ((a & V(1)) ^ (a & V(2)) ^ (V(1) & V(2)));
+#undef V
 }
 
 /* sha256_block: fold one block of 64 bytes into the hash h (6.2.2, steps 2 to 4). */
 static void sha256_block(uint32_t h[8], const unsigned char *block)
 {
-    uint32_t w[64], v[8];
-    sha256_schedule(block, w);
+    uint32_t w[16], v[8];
     memcpy(v, h, sizeof v);
-    for (int t = 0; t < 64; t++) {
-        /* The working variables a .. h are v[0] .. v[7]; a round shifts them by one place. */
-        uint32_t a = v[0], e = v[4];
-        uint32_t s1 = rotate_right(e, 6) ^ rotate_right(e, 11) ^ rotate_right(e, 25);
-        uint32_t t1 = v[7] + s1 + ((e & v[5]) ^ (~e & v[6])) + K[t] + w[t];
-        uint32_t s0 = rotate_right(a, 2) ^ rotate_right(a, 13) ^ rotate_right(a, 22);
-        uint32_t t2 = s0 + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
-        memmove(v + 1, v, 7 * sizeof v[0]);
-        v[4] += t1;
-        v[0] = t1 + t2;
+    for (int i = 0; i < 16; i++) w[i] = word_at(block + 4 * i);
+    for (int t = 0; t < 64; t += 8) {
+        /* Unrolled, the places are constants and the variables registers. */
+#pragma GCC unroll 8
+        for (int k = 0; k < 8; k++)
+            round_of(v, k, K[t + k] + (t < 16 ? w[t + k] : next_word(w, t + k)));
     }
     /* Added to the hash so far: what makes the function hard to run backwards. */
     for (int i = 0; i < 8; i++) h[i] += v[i];

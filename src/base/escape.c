@@ -16,6 +16,7 @@
 
 #include "base/check.h"
 #include "base/memory.h"
+#include "base/whole.h"
 
 #ifdef SANITIZERS
 #include <sanitizer/lsan_interface.h>
@@ -27,19 +28,6 @@ struct guard {
     int n, need; /* bytes of it that have come, and that it has */
     unsigned char held[4];
 };
-
-/* write may take less than it is given. */
-static bool write_all(int descriptor, const char *s, size_t n)
-{
-    while (n > 0) {
-        const ssize_t k = write(descriptor, s, n);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return false;
-        s += k;
-        n -= (size_t)k;
-    }
-    return true;
-}
 
 /* Whether a reader would obey it and not show it: control characters of both sets but line end and
  * tab, and the signs that change the direction of writing (Unicode 15, 23.1 and 23.2). */
@@ -106,10 +94,10 @@ static ssize_t guard_write(void *guard, const char *data, size_t size)
     for (size_t i = 0; i < size; i++) {
         k += take(g, (unsigned char)data[i], out + k);
         if (k < 4096) continue;
-        if (!write_all(g->descriptor, out, k)) return 0;
+        if (!write_whole(g->descriptor, out, k)) return 0;
         k = 0;
     }
-    return write_all(g->descriptor, out, k) ? (ssize_t)size : 0;
+    return write_whole(g->descriptor, out, k) ? (ssize_t)size : 0;
 }
 
 static FILE *guarded(int descriptor, int buffering)
@@ -135,7 +123,7 @@ void escape_terminal(void)
 void escape_raw(int descriptor, const char *s, size_t n)
 {
     fflush(descriptor == STDERR_FILENO ? stderr : stdout);
-    (void)write_all(descriptor, s, n);
+    (void)write_whole(descriptor, s, n);
 }
 
 /* A backslash before punctuation is the punctuation itself (CommonMark 0.31, 2.4), its own too: one

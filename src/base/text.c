@@ -105,15 +105,18 @@ void text_add(struct text *t, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    /* Twice: once to know the length, once to write. */
-    int n = vsnprintf(NULL, 0, format, args);
+    /* Into the room that there is; mostly that is enough. */
+    const size_t room = t->capacity > t->length ? t->capacity - t->length : 0;
+    const int n = vsnprintf(room > 0 ? t->s + t->length : NULL, room, format, args);
     va_end(args);
     /* The formatting itself may want memory. */
     if (n < 0) check_memory(0);
-    text_reserve(t, (size_t)n);
-    va_start(args, format);
-    vsnprintf(t->s + t->length, (size_t)n + 1, format, args);
-    va_end(args);
+    if ((size_t)n >= room) {
+        text_reserve(t, (size_t)n);
+        va_start(args, format);
+        vsnprintf(t->s + t->length, (size_t)n + 1, format, args);
+        va_end(args);
+    }
     t->length += (size_t)n;
 }
 

@@ -48,6 +48,9 @@ void text_add_integer(struct text *t, int64_t v);
 /* text_free: give the memory back and return to {0}. */
 void text_free(struct text *t);
 
+/* text_file_kind: what a file with st_mode `mode` is, for messages: "a pipe", "a folder". */
+const char *text_file_kind(unsigned mode);
+
 /* text_open_file: the regular file `path` for reading, opened without waiting for anybody, and not
  * through a pipe or a device, which may have no end. Returns NULL with ERR_NO_INPUT (not there),
  * ERR_DATA (no regular file) or ERR_IO. */

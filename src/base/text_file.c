@@ -14,13 +14,13 @@
 #include "base/size.h"
 #include "base/text.h"
 
-/* What a name leads to that is no regular file. */
-static const char *kind_of(mode_t mode)
+const char *text_file_kind(unsigned mode)
 {
-    if (S_ISDIR(mode)) return "a folder, not a file";
-    if (S_ISFIFO(mode)) return "a pipe, not a file";
-    if (S_ISSOCK(mode)) return "a socket, not a file";
-    return "a device, not a file";
+    if (S_ISREG(mode)) return "a file";
+    if (S_ISDIR(mode)) return "a folder";
+    if (S_ISFIFO(mode)) return "a pipe";
+    if (S_ISSOCK(mode)) return "a socket";
+    return "a device";
 }
 
 FILE *text_open_file(const char *path, struct err *e)
@@ -32,14 +32,15 @@ FILE *text_open_file(const char *path, struct err *e)
     if (file < 0) {
         /* A socket cannot be opened; what it is says more than "No such device or address". */
         const bool other = errno == ENXIO && stat(path, &info) == 0 && !S_ISREG(info.st_mode);
-        if (other) err_set_at(e, ERR_DATA, path, 0, "%s", kind_of(info.st_mode));
+        if (other) err_set_at(e, ERR_DATA, path, 0, "%s, not a file", text_file_kind(info.st_mode));
         else err_set_at(e, ERR_NO_INPUT, path, 0, "cannot open: %s", strerror(errno));
         return NULL;
     }
     /* Of the opened file, not of the name: it may lead elsewhere by now. */
     FILE *in = NULL;
     if (fstat(file, &info) != 0) err_set_at(e, ERR_IO, path, 0, "cannot read: %s", strerror(errno));
-    else if (!S_ISREG(info.st_mode)) err_set_at(e, ERR_DATA, path, 0, "%s", kind_of(info.st_mode));
+    else if (!S_ISREG(info.st_mode))
+        err_set_at(e, ERR_DATA, path, 0, "%s, not a file", text_file_kind(info.st_mode));
     else if ((in = fdopen(file, "rb")) == NULL)
         err_set_at(e, ERR_INTERNAL, path, 0, "cannot open: %s", strerror(errno));
     if (!in) close(file);

@@ -107,9 +107,8 @@ static bool expand_points(struct expansion *x, int64_t capacity)
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
 {
     struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena},
-                          .calls = {.arena = p->arena}};
+                          .calls = {.arena = p->arena}, .work = EXPAND_WORK};
     int64_t n = s->repetitions;
-    int ntable;
     if (s->jobs != NULL) n *= expand_jobs_runs(s->jobs);
     /* Counted before anything is built: a few lines can ask for any number of runs. The count stops
      * growing long before it overflows. */
@@ -121,11 +120,10 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
                           "split it into several scenarios",
                           n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n,
                           MAX_RUNS);
-    const struct field_table *const *table = field_tables(&ntable);
-    x.identity = identity_create(table, ntable);
+    x.identity = s->identity != NULL ? s->identity : identity_of_runs();
     p->memory = TAKE(p->arena, 1, struct plan_memory);
     bool fine = expand_points(&x, n);
-    identity_destroy(x.identity);
+    if (s->identity == NULL) identity_destroy(x.identity);
     p->search = s->search;
     p->answer = s->answer;
     p->memory->scenario = s;
@@ -146,8 +144,8 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
     struct scenario s = *p->memory->scenario;
     struct plan counts = *p;
     struct expansion x = {.plan = &counts, .scenario = &s, .err = e, .starts = p->memory->starts,
-                          .changes = {.arena = p->arena}, .calls = {.arena = p->arena}};
-    int ntable;
+                          .changes = {.arena = p->arena}, .calls = {.arena = p->arena},
+                          .work = EXPAND_WORK};
     /* the odometer as it stood when the point was made */
     int64_t number = p->point[index];
     for (int i = s.naxis - 1; i >= 0; i--) {
@@ -164,11 +162,10 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
         if (!setting_list_add(&set, key[i], text[i], "optimise", 0, p->arena, e)) return false;
     s.set = set;
     s.ncondition = 0;
-    const struct field_table *const *table = field_tables(&ntable);
-    x.identity = identity_create(table, ntable);
+    x.identity = s.identity != NULL ? s.identity : identity_of_runs();
     /* conditions were asked when the plan was made */
     const int made = make_point(&x, run);
-    identity_destroy(x.identity);
+    if (s.identity == NULL) identity_destroy(x.identity);
     run->rep = p->run[index].rep;
     return made == 1;
 }

@@ -6,6 +6,10 @@
 #include "plan/plan.h"
 #include "plan/scenario_file.h"
 
+/* What plan_options.fits may build for one plan: a second of it at most, but for graphs by
+ * chance. */
+enum { EXPAND_WORK = 1 << 24 };
+
 /* expand_runs: fill p->run: every point of the axes' cross product, the first axis slowest,
  * repetitions fastest. Returns false with ERR_NO_INPUT, ERR_DATA or ERR_CONFIG. */
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e);

@@ -270,7 +270,8 @@ int expand_jobs(struct expansion *x, struct run_spec *run)
      * are idle keep their places. */
     struct err room;
     err_clear(&room);
-    const bool fits = check_room(x, job, &room);
+    const bool fits =
+        check_room(x, job, &room) && expand_fits(x, &job[0].machine, job[0].nrank, &set, &room);
     /* One behind the other: alone, pairs, all. */
     while (combination_next(&c)) {
         const int made = add_combination(x, &c, job, &set, digest, fits ? NULL : &room, &run[n]);

@@ -24,6 +24,16 @@ struct plan_memory {
     struct start **start_of; /* (nrun) on which machine each run is */
 };
 
+enum { EXPAND_LISTS = SCENARIO_MAX_AXES + 3 }; /* of settings that act at one point */
+
+/* The answer of plan_options.fits for the point before. */
+struct asked {
+    struct machine_spec machine;
+    int nrank; /* 0: nobody has asked yet, or of jobs */
+    bool fits;
+    struct err why;
+};
+
 struct expansion {
     struct plan *plan;
     const struct scenario *scenario;
@@ -38,7 +48,18 @@ struct expansion {
     struct machine_changes changes; /* of the machines seen so far */
     struct calls calls;             /* what runs are called */
     size_t text_bytes;              /* settings of all runs so far, as texts */
+    struct asked asked;
+    int64_t work; /* left of EXPAND_WORK */
 };
+
+/* expand_lists: the settings of the present point in the order in which they act; how many
+ * lists. */
+int expand_lists(const struct expansion *x, const struct setting_list *list[EXPAND_LISTS]);
+
+/* expand_fits: whether machine m of the present point can be built for nrank ranks, or the jobs
+ * (NULL: there is one program); false with the reason and its place. */
+bool expand_fits(struct expansion *x, const struct machine_spec *m, int nrank,
+                 const struct job_set *jobs, struct err *e);
 
 /* expand_spec: the settings of the present point, with those of x->job, in *run: not yet named or
  * identified. False with x->err. expand_finish: conditions, name, files, identity; 1: made, 0: left

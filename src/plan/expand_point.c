@@ -14,30 +14,15 @@
 #include "plan/file_kind.h"
 #include "plan/program_file.h"
 
-/* MOST_LISTS: of settings that act at one point. A run's settings are 5 KB of text as a rule; those
- * of all runs may have as much beyond that. */
-enum { MAX_BODIES = 1 << 27, MOST_LISTS = SCENARIO_MAX_AXES + 3,
-       USUAL_TEXT_BYTES = 8192, MOST_TEXT_BYTES = 1 << 26 };
-
-/* The settings of the present point in the order in which they act; how many lists. */
-static int lists_of(const struct expansion *x, const struct setting_list *list[MOST_LISTS])
-{
-    const struct scenario *s = x->scenario;
-    int n = 0;
-    /* base, then one point of each axis, the job, then the command line: the last one wins */
-    list[n++] = &s->base;
-    for (int i = 0; i < s->naxis; i++) list[n++] = &s->axis[i].point[x->point[i]];
-    if (x->job != NULL) list[n++] = x->job;
-    list[n++] = &s->set;
-    return n;
-}
+/* A run's settings are 5 KB of text as a rule; those of all runs may have as much beyond that. */
+enum { MAX_BODIES = 1 << 27, USUAL_TEXT_BYTES = 8192, MOST_TEXT_BYTES = 1 << 26 };
 
 /* The last setting that matches, NULL when there is none. */
 static const struct setting *last_of(const struct expansion *x,
                                      bool (*matches)(const struct setting *))
 {
-    const struct setting_list *list[MOST_LISTS];
-    int n = lists_of(x, list);
+    const struct setting_list *list[EXPAND_LISTS];
+    int n = expand_lists(x, list);
     const struct setting *found = NULL;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < list[i]->n; j++)
@@ -222,7 +207,8 @@ static void refuse_run(struct expansion *x, struct run_spec *run, const struct e
     text_free(&t);
 }
 
-/* check_fits writes to x->err: for its time that is `why`. */
+/* check_fits writes to x->err: for its time that is `why`. Jobs are asked about together
+ * (expand_jobs.c). */
 static void note_refusal(struct expansion *x, struct run_spec *run)
 {
     struct err why, *others = x->err;
@@ -230,6 +216,7 @@ static void note_refusal(struct expansion *x, struct run_spec *run)
     x->err = &why;
     bool fits = check_fits(x, run);
     x->err = others;
+    fits = fits && (run->jobs != NULL || expand_fits(x, &run->machine, run->nrank, NULL, &why));
     if (x->room != NULL) refuse_run(x, run, x->room);
     else if (!fits) refuse_run(x, run, &why);
 }
@@ -237,8 +224,8 @@ static void note_refusal(struct expansion *x, struct run_spec *run)
 /* A program's n stands for n, so its parameters follow when n is known. */
 static bool resolve_program(struct expansion *x, struct run_spec *run)
 {
-    const struct setting_list *list[MOST_LISTS];
-    const int n = lists_of(x, list);
+    const struct setting_list *list[EXPAND_LISTS];
+    const int n = expand_lists(x, list);
     return program_file_choose(x->scenario, run, list, n, x->err) && resolve_sizes(x, run) &&
            program_file_parameters(x->scenario, run, list, n, x->plan->arena, x->err);
 }
@@ -257,8 +244,8 @@ static void name_run(struct expansion *x, struct run_spec *run, const struct mac
 
 bool expand_spec(struct expansion *x, struct run_spec *run)
 {
-    const struct setting_list *list[MOST_LISTS];
-    const int n = lists_of(x, list);
+    const struct setting_list *list[EXPAND_LISTS];
+    const int n = expand_lists(x, list);
     struct start *start = start_of(x);
     if (start == NULL) return false;
     x->present = start;

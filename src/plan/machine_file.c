@@ -371,3 +371,21 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
                           "machine %s: family 'graph' needs topology.links", m->name);
     return true;
 }
+
+int machine_file_blame(const struct machine_file *m, struct err *e)
+{
+    const char *text = e->text + (strncmp(e->text, "machine.", 8) == 0 ? 8 : 0);
+    for (int i = 0; i < machine_table.nfield; i++) {
+        const char *key = machine_table.field[i].key;
+        const size_t length = strlen(key);
+        if (strncmp(text, key, length) != 0 || text[length] == '\0' ||
+            strchr(": ", text[length]) == NULL)
+            continue;
+        if (m->value[i].line > 0) {
+            text_copy(e->file, sizeof e->file, m->value[i].file);
+            e->line = m->value[i].line;
+        }
+        return i;
+    }
+    return -1;
+}

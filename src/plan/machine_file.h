@@ -38,4 +38,8 @@ bool machine_file_read(struct machine_file *m, const char *name, const char *nea
  * rates. Returns false with ERR_CONFIG at `file`:`line`. */
 bool machine_file_check(const struct machine_spec *m, const char *file, int line, struct err *e);
 
+/* machine_file_blame: the place of an error whose text begins with the key of a setting, where a
+ * file of m gives that. Returns the number of the field in machine_table, -1: it is about none. */
+int machine_file_blame(const struct machine_file *m, struct err *e);
+
 #endif

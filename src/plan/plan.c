@@ -91,6 +91,8 @@ static bool fill(struct plan *p, struct scenario *s, const struct plan_options *
 {
     /* Values of parameters are checked before the expansion, which takes them as right. */
     if (!all_kernels_exist(s, o, p->arena, e) || !program_file_check(s, p->arena, e)) return false;
+    s->fits = o != NULL ? o->fits : NULL;
+    s->identity = o != NULL ? o->identity : NULL;
     text_copy(p->name, sizeof p->name, s->stem);
     p->question = s->question;
     p->figure = s->figure;
@@ -121,6 +123,16 @@ void plan_free(struct plan *p)
     *p = (struct plan){0};
 }
 
+/* Whether the machine can be built, for one rank. */
+static bool machine_fits(const struct machine_file *m, const char *path,
+                         const struct plan_options *o, struct err *e)
+{
+    int64_t work = EXPAND_WORK;
+    if (o == NULL || o->fits == NULL || o->fits(&m->spec, 1, NULL, &work, e)) return true;
+    if (machine_file_blame(m, e) < 0 || e->line == 0) text_copy(e->file, sizeof e->file, path);
+    return false;
+}
+
 /* As `run` would read the file, without running. A file of neither kind is read as a scenario,
  * whose messages say what is missing. */
 bool plan_check_file(const char *path, const struct plan_options *o, struct err *e)
@@ -144,7 +156,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
         struct text as_path = {0};
         /* "./" in front: a name without a slash would be looked up among the shipped machines. */
         text_add(&as_path, "%s%s", strchr(path, '/') == NULL ? "./" : "", path);
-        fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
+        fine = machine_file_read(&m, as_path.s, NULL, p.arena, e) && machine_fits(&m, path, o, e);
         text_free(&as_path);
     } else if (fine) {
         fine = scenario_file_tree(&s, root, path, &programs, p.arena, e) && fill(&p, &s, o, e);

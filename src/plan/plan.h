@@ -26,6 +26,15 @@ struct plan_options {
     const struct program_sheet *(*program)(void *context, const char *path, struct arena *a,
                                            struct err *e);
     void *program_context;
+    /* fits: whether machine m can be built and holds nrank ranks, or all the jobs (NULL: one
+     * program); false with the reason, whose text begins with the key to blame. `work` bounds what
+     * is built for a whole plan: beyond it everything fits until it runs. A NULL function: nobody
+     * is asked. */
+    bool (*fits)(const struct machine_spec *m, int nrank, const struct job_set *jobs,
+                 int64_t *work, struct err *e);
+    /* what identifies the runs (identity_of_runs), borrowed as long as the plan, and knows their
+     * texts then; NULL: one of its own */
+    struct identity *identity;
     bool allow_programs; /* scenarios may name programs outside their own folder */
     /* --only: a condition besides the scenario's own (condition.h), NULL: none */
     const char *only;
@@ -103,7 +112,7 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
                struct run_spec *run, struct err *e);
 
 /* plan_check_file: validate a scenario, a machine file (by its content) or a program without
- * running; `o` may be NULL. */
+ * running, o->fits included; `o` may be NULL. */
 bool plan_check_file(const char *path, const struct plan_options *o, struct err *e);
 
 /* Where one value of a resolved machine comes from. */

@@ -88,7 +88,12 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
                                      .chain = n->code.chain * factor,
                                      .step = n->code.step * factor,
                                      .load = n->code.load * factor,
-                                     .whole = n->code.whole * factor};
+                                     .whole = n->code.whole * factor,
+                                     .add = n->code.add * factor,
+                                     .multiply = n->code.multiply * factor,
+                                     .fetch = n->code.fetch * factor,
+                                     .add_latency = n->code.add_latency * factor,
+                                     .multiply_latency = n->code.multiply_latency * factor};
         return;
     default:
         break;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "report/plot_points.h"
 #include "report/report.h"
 #include "store/temporary.h"
@@ -189,8 +189,7 @@ static void make_axes(struct plot *p)
     const struct plot_sheet *s = &p->sheet;
     const struct plot_request *r = p->request;
     /* One buffer for the numbers of each axis in turn. */
-    double *v = malloc((size_t)(q->n + q->nx + q->ny + 1) * sizeof *v);
-    CHECK(v != NULL);
+    double *v = memory_take((size_t)(q->n + q->nx + q->ny + 1), sizeof *v);
     for (int i = 0; i < q->nx; i++) v[i] = plot_sheet_at(s, q->x[i], p->axes.x)->number;
     make_axis(&p->x, &s->column[p->axes.x], r->x_scale, q->nx, v);
     for (int i = 0; i < q->ny; i++) v[i] = plot_sheet_at(s, q->y[i], p->axes.y)->number;

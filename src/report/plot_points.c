@@ -9,10 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 
 static const double HIDDEN = 0.005; /* curves that are nearer to each other lie on each other */
 enum { MOST_SPLIT = 24 }; /* a column with more values makes no legend: they are samples */
+enum { MOST_DRAWN = 50000 }; /* rows, which are compared with each other: some seconds */
 
 /* One row with its place. */
 struct placed {
@@ -145,8 +146,7 @@ static bool splits(const struct making *m, int column)
 /* How many different values a column has among the rows that are drawn. */
 static int values_of(const struct making *m, int column)
 {
-    int *place = malloc((size_t)(m->n + 1) * sizeof *place);
-    CHECK(place != NULL);
+    int *place = memory_take((size_t)m->n + 1, sizeof *place);
     const int n = list_places(m, column, place);
     free(place);
     return n;
@@ -282,9 +282,12 @@ static bool repetitions(const struct making *m, const struct placed *at, int n)
 static bool is_told(const char *all, const char *title)
 {
     const size_t n = strlen(title);
-    for (const char *s = all; s != NULL && (s = strstr(s, title)) != NULL; s++)
-        if ((s == all || (s[-1] == ' ' && s[-2] == ',')) && (s[n] == '\0' || s[n] == ','))
-            return true;
+    /* Title by title: of a query one may be empty, or begin with a blank. */
+    for (const char *s = all; s != NULL;) {
+        if (strncmp(s, title, n) == 0 && (s[n] == '\0' || s[n] == ',')) return true;
+        s = strstr(s, ", ");
+        if (s != NULL) s += 2;
+    }
     return false;
 }
 
@@ -385,6 +388,11 @@ bool plot_points_make(struct plot_points *p, const struct plot_sheet *sheet, str
                       struct err *e)
 {
     *p = (struct plot_points){0};
+    if (sheet->nrow > MOST_DRAWN)
+        return err_set(e, ERR_USAGE,
+                       "%d rows are more than a figure can show, which is %d: choose with --where, "
+                       "or let a query of your own group them",
+                       sheet->nrow, MOST_DRAWN);
     struct making m = {.sheet = sheet, .axes = axes, .p = p,
                        .at = TAKE(sheet->arena, sheet->nrow + 1, struct placed)};
     /* Places first: which rows meet on one point decides which columns a legend needs. */

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "spec/setting_number.h"
 
@@ -224,9 +224,9 @@ static void write_query(const struct source *list, int n, struct text *sql)
     text_add(sql, "SELECT v.run_id");
     for (int i = 0; i < n; i++) {
         if (!list[i].setting) {
-            const bool own = is_in(of_bodies, OF_BODIES, list[i].name);
-            text_add(sql, own ? ", iif(r.nu > 0, %s.\"%s\", NULL), NULL, NULL"
-                              : ", %s.\"%s\", NULL, NULL",
+            const bool bodies = is_in(of_bodies, OF_BODIES, list[i].name);
+            text_add(sql, bodies ? ", iif(r.nu > 0, %s.\"%s\", NULL), NULL, NULL"
+                                 : ", %s.\"%s\", NULL, NULL",
                      list[i].result ? "r" : "v", list[i].name);
             continue;
         }
@@ -257,23 +257,27 @@ static enum unit unit_of_symbol(const char *si)
     return UNIT_NONE;
 }
 
+enum { MOST_ROWS = 1000000 }; /* read for a figure: a query of one's own may have no end */
+
 /* Rows as they come. */
 struct reading {
     struct plot_sheet *sheet;
     int capacity;
     int run_column; /* of a query: which column is run_id, -1: none */
+    bool too_many;  /* rows: the others were not read */
 };
 
-/* Room for one row more. */
+/* Room for one row more; NULL: no figure has so many. */
 static struct plot_cell *next_row(struct reading *r)
 {
     struct plot_sheet *sheet = r->sheet;
+    r->too_many = sheet->nrow == MOST_ROWS;
+    if (r->too_many) return NULL;
     if (sheet->nrow == r->capacity) {
         r->capacity = r->capacity > 0 ? 2 * r->capacity : 64;
         const size_t row = (size_t)sheet->ncolumn * sizeof *sheet->cell;
-        sheet->cell = realloc(sheet->cell, (size_t)r->capacity * row);
-        sheet->run_id = realloc(sheet->run_id, (size_t)r->capacity * sizeof *sheet->run_id);
-        CHECK(sheet->cell != NULL && sheet->run_id != NULL);
+        sheet->cell = memory_resize(sheet->cell, (size_t)r->capacity, row);
+        sheet->run_id = memory_resize(sheet->run_id, (size_t)r->capacity, sizeof *sheet->run_id);
     }
     return &sheet->cell[(size_t)sheet->nrow++ * (size_t)sheet->ncolumn];
 }
@@ -300,6 +304,7 @@ static bool take_run(void *context, int ncolumn, const char *const *name,
     struct reading *r = context;
     (void)ncolumn, (void)name;
     struct plot_cell *row = next_row(r);
+    if (row == NULL) return false;
     /* The number of the run is no column: no axis shows it. */
     r->sheet->run_id[r->sheet->nrow - 1] = value[0].integer;
     for (int i = 0; i < r->sheet->ncolumn; i++) {
@@ -310,6 +315,15 @@ static bool take_run(void *context, int ncolumn, const char *const *name,
         if (v[2].kind == STORE_TEXT) r->sheet->column[i].unit = unit_of_symbol(v[2].text);
     }
     return true;
+}
+
+/* Returns false when there were too many. */
+static bool refuse_rows(const struct reading *r, struct err *e)
+{
+    return !r->too_many || err_set(e, ERR_USAGE,
+                                   "more than %d rows are too many for a figure: let a query of "
+                                   "your own group or choose them",
+                                   MOST_ROWS);
 }
 
 /* A column whose known values are all numbers has an axis; any other has names on it. */
@@ -370,7 +384,8 @@ bool plot_sheet_runs(struct plot_sheet *sheet, struct store *s, int n, const cha
         for (int i = 0; i < count; i++)
             if (list[i].setting) param[nparam++] = list[i].name;
     }
-    bool ok = count >= 0 && store_query(s, sql.s, nparam, param, NULL, take_run, &r, e);
+    bool ok = count >= 0 && store_query(s, sql.s, nparam, param, NULL, take_run, &r, e) &&
+              refuse_rows(&r, e);
     text_free(&sql);
     if (ok) find_numbers(sheet);
     else plot_sheet_free(sheet);
@@ -408,6 +423,7 @@ static bool take_row(void *context, int ncolumn, const char *const *name,
     struct reading *r = context;
     (void)name;
     struct plot_cell *row = next_row(r);
+    if (row == NULL) return false;
     for (int i = 0; i < ncolumn; i++) row[i] = cell_of(r->sheet->arena, &value[i]);
     r->sheet->run_id[r->sheet->nrow - 1] = r->run_column >= 0 ? value[r->run_column].integer : 0;
     return true;
@@ -418,7 +434,7 @@ bool plot_sheet_query(struct plot_sheet *sheet, struct store *s, const char *sql
 {
     *sheet = (struct plot_sheet){.arena = arena_create()};
     struct reading r = {.sheet = sheet};
-    if (!store_query(s, sql, 0, NULL, take_header, take_row, &r, e))
+    if (!store_query(s, sql, 0, NULL, take_header, take_row, &r, e) || !refuse_rows(&r, e))
         return plot_sheet_free(sheet), false;
     find_numbers(sheet);
     return true;

@@ -18,8 +18,8 @@
 
 #include "base/check.h"
 #include "base/memory.h"
-#include "base/pipe.h"
 #include "base/progress.h"
+#include "base/whole.h"
 #include "loader/crash.h"
 #include "measure/run_heartbeat.h"
 #include "run/result_parts.h"
@@ -42,23 +42,23 @@ struct answer {
 /* From the worker to its parent. */
 static bool send_answer(int fd, struct answer *a)
 {
-    if (!pipe_write(fd, a, sizeof *a)) return false;
+    if (!write_whole(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct result_parts p = result_parts(&a->result);
     for (int i = 0; i < RESULT_PARTS; i++)
-        if (!pipe_write(fd, *p.array[i], p.bytes[i])) return false;
+        if (!write_whole(fd, *p.array[i], p.bytes[i])) return false;
     return true;
 }
 
 /* The arrays get memory of the parent's arena. */
 static bool receive_answer(int fd, struct answer *a, struct arena *arena)
 {
-    if (!pipe_read(fd, a, sizeof *a)) return false;
+    if (!read_whole(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct result_parts p = result_parts(&a->result);
     for (int i = 0; i < RESULT_PARTS; i++) {
         *p.array[i] = p.bytes[i] ? arena_take(arena, p.bytes[i]) : NULL;
-        if (!pipe_read(fd, *p.array[i], p.bytes[i])) return false;
+        if (!read_whole(fd, *p.array[i], p.bytes[i])) return false;
     }
     return true;
 }
@@ -153,7 +153,7 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
     struct err unguarded; /* a crash is then told by its signal alone */
     err_clear(&unguarded);
     if (c->worker[at].crash) crash_guard_begin(c->worker[at].crash, &unguarded);
-    while (pipe_read(orders, &index, sizeof index)) {
+    while (read_whole(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
         const struct run_order own = own_order(c->order, index, c->cores, heartbeat);
@@ -203,7 +203,7 @@ static void give_run(struct worker *w, int index)
 {
     w->busy = index;
     /* A worker without its order would be waited for for ever. */
-    if (index >= 0 && !pipe_write(w->orders, &w->busy, sizeof w->busy)) kill(w->pid, SIGKILL);
+    if (index >= 0 && !write_whole(w->orders, &w->busy, sizeof w->busy)) kill(w->pid, SIGKILL);
 }
 
 /* The next run in plan order that is to be made. */

@@ -2,9 +2,11 @@
 #include "run/launch.h"
 
 #include <sched.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/check.h"
+#include "base/size.h"
 #include "base/text.h"
 #include "run/rank_stack.h"
 #include "spec/collective_spec.h"
@@ -31,17 +33,24 @@ static void program(struct comm *c, void *context)
     else l->rank->run(c, l->job, workspace);
 }
 
-/* Taken one by one: all of it will be touched, so the arena may use large pages. */
+/* Taken one by one: all of it will be touched, so the arena may use large pages. What the computer
+ * does not have is not taken: the sum goes on, to tell how much it is. NULL: with the error set. */
 static char **make_workspaces(const struct program_run *r, const struct world_load *load,
-                              const struct tape *tape, struct arena *a)
+                              const struct tape *tape, struct arena *a, struct err *e)
 {
+    const size_t room = size_available();
+    size_t sum = 0;
     int first, end;
-    char **w = TAKE(a, r->spec.nrank, char *);
+    char what[64], **w = TAKE(a, r->spec.nrank, char *);
     world_part(load, &first, &end);
-    for (int i = first; i < end; i++)
-        w[i] = arena_take(a, tape && tape_whole(tape) ? tape_workspace(tape, i)
-                                                      : r->rank->workspace_bytes(r->job, i));
-    return w;
+    for (int i = first; i < end; i++) {
+        const size_t own = tape && tape_whole(tape) ? tape_workspace(tape, i)
+                                                    : r->rank->workspace_bytes(r->job, i);
+        sum = size_sum(sum, own);
+        if (sum <= room) w[i] = arena_take(a, own);
+    }
+    snprintf(what, sizeof what, "what %d ranks of '%s' work in", end - first, r->type->name);
+    return size_in_memory(sum, "", 0, what, e) ? w : NULL;
 }
 
 /* -1: the program does not promise any bound. */
@@ -134,8 +143,10 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     /* What processes cannot share, the first one does. */
     if (ordered && r->order.hosts && r->order.hosts->rank > 0) return true;
     if (!ordered) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
-    struct launch l = {r->rank, r->job, tape, make_workspaces(r, &load, tape, scratch)};
+    struct launch l = {r->rank, r->job, tape, make_workspaces(r, &load, tape, scratch, e)};
+    if (!l.workspace) return false;
     load.context = &l;
+    if (tape && load.threads <= 1 && !load.hosts) load.stacks = tape_stacks(tape);
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
     if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts))
         return true;
@@ -149,8 +160,8 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.hosts = NULL;
     load.threads = 1;
     l.tape = NULL;
-    l.workspace = make_workspaces(r, &load, NULL, scratch);
-    return world_run(m, &load, record, seed, a, out, e);
+    l.workspace = make_workspaces(r, &load, NULL, scratch, e);
+    return l.workspace && world_run(m, &load, record, seed, a, out, e);
 }
 
 bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec *m, uint64_t seed,
@@ -170,7 +181,8 @@ bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec 
         load[i].working_set = working_set(j->r);
         if (!load[i].foreign && !rank_stack_set(&load[i], e)) return false;
         l[i] = (struct launch){j->r->rank, j->r->job, NULL,
-                               make_workspaces(j->r, &load[i], NULL, j->scratch)};
+                               make_workspaces(j->r, &load[i], NULL, j->scratch, e)};
+        if (!l[i].workspace) return false;
         load[i].context = &l[i];
         own[i].load = &load[i];
         j->out->threads = 1;

@@ -16,6 +16,7 @@
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/run_parts.h"
+#include "vp/world.h"
 
 enum { TAG_VERDICT = 400 };
 
@@ -226,6 +227,13 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 }
 
 /* --- before it runs --------------------------------------------------------------------------- */
+
+/* Rooms above know runs, not virtual processors. */
+bool run_fits(const struct machine_spec *m, int nrank, const struct job_set *jobs, int64_t *work,
+              struct err *e)
+{
+    return world_fits(m, nrank, jobs, work, e);
+}
 
 /* Before it runs the memory of a built-in program is an estimate. */
 static void tell_node(const struct run_spec *spec, const struct program_estimate *k, char *text,

@@ -56,6 +56,10 @@ bool run_attempts(struct program_run *r, struct run_cache *cache, struct arena *
  * failed. */
 void run_close(struct program_run *r);
 
+/* run_fits: whether a run would begin (world_fits), for plan_options.fits. */
+bool run_fits(const struct machine_spec *m, int nrank, const struct job_set *jobs, int64_t *work,
+              struct err *e);
+
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
     int64_t nbody, nu; /* bodies, degrees of freedom */

@@ -2,14 +2,20 @@
  *
  * Writing: a struct comm of our own between the program and the virtual processor notes each call
  * and hands it on. Repeating: the notes, called one after the other. Requests live with the
- * program; a note knows them by their place among those of the rank that are in progress. */
+ * program; a note knows them by their place among those of the rank that are in progress.
+ *
+ * A tape is read once a run, by ranks in turn, so that it comes from memory and not from the cache.
+ * Few notes differ in more than their peer, and these are told apart once: a step is a peer and the
+ * number of a call in a table that stays in the cache, 8 bytes instead of 88. */
 #include "run/tape.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/digest.h"
 #include "base/memory.h"
+#include "sim/fiber.h"
 #include "spec/collective_spec.h"
 
 /* MOST_TASKS, MOST_BYTES: what one process keeps. MOST_REQUESTS: of a rank in progress at once; a
@@ -18,17 +24,30 @@ enum { MOST_TASKS = 512, MOST_BYTES = 192 << 20, MOST_REQUESTS = 64, NO_REQUEST 
 
 enum what { SEND, RECEIVE, WAIT, BARRIER, WORK, STAGE };
 
-/* A call; `at`: number of its request, of its work, or of its stage. */
+/* A call; `at`: number of its request, or of its stage. All of its bytes are members'. */
+struct call {
+    int64_t bytes, tag;
+    struct work work;
+    int32_t at, what;
+};
+
+/* A call of one rank as it is written down; `at`: also the number of its work. */
 struct note {
     int64_t bytes, tag;
     int32_t peer, at;
     int32_t what;
 };
 
+/* The same in a tape that is whole. */
+struct step {
+    int32_t peer, call;
+};
+
 /* What one rank did. */
 struct part {
-    struct note *note; /* (n) owned */
-    struct work *work; /* (nwork) owned */
+    struct note *note;       /* (n) owned, NULL when the tape is whole */
+    struct work *work;       /* (nwork) likewise */
+    const struct step *step; /* (n) of a whole tape, which owns it */
     int n, room, nwork, work_room;
     int requests; /* the most in progress at once */
     bool unfit;   /* it did what cannot be repeated */
@@ -45,14 +64,18 @@ struct task {
 
 struct tape {
     struct task task;
+    struct tapes *all;
     bool whole, unfit;
     struct part *part;               /* (task.nrank) owned, NULL: nothing is written */
+    struct step *step;               /* of all ranks, one after the other; owned, as is call */
+    struct call *call;               /* those that differ */
     double *output[PROGRAM_OUTPUTS]; /* owned; NULL: none */
     int64_t stack_peak_bytes;        /* of the program itself */
 };
 
 struct tapes {
     bool at_once;
+    struct fiber_pool *stacks; /* of the last run that repeated one, NULL: none; owned */
     int n;
     size_t bytes; /* of all that are whole */
     struct tape tape[MOST_TASKS];
@@ -65,22 +88,35 @@ struct tapes *tapes_create(bool at_once)
     return t;
 }
 
-/* Its notes go, its task stays known. */
-static void clear(struct tape *t)
+/* What was written down goes: a whole tape has its steps. */
+static void clear_notes(struct tape *t)
 {
     for (int i = 0; t->part && i < t->task.nrank; i++) {
         free(t->part[i].note);
         free(t->part[i].work);
+        t->part[i].note = NULL;
+        t->part[i].work = NULL;
     }
+}
+
+/* Its notes go, its task stays known. */
+static void clear(struct tape *t)
+{
+    clear_notes(t);
     for (int i = 0; i < PROGRAM_OUTPUTS; i++) free(t->output[i]), t->output[i] = NULL;
     free(t->part);
+    free(t->step);
+    free(t->call);
     t->part = NULL;
+    t->step = NULL;
+    t->call = NULL;
     t->whole = false;
 }
 
 void tapes_destroy(struct tapes *t)
 {
     for (int i = 0; t && i < t->n; i++) clear(&t->tape[i]);
+    if (t) fiber_pool_destroy(t->stacks);
     free(t);
 }
 
@@ -117,7 +153,7 @@ struct tape *tape_for(struct tapes *t, const struct program_run *r)
     const bool seen = tape != NULL;
     if (!tape && t->n < MOST_TASKS) {
         tape = &t->tape[t->n++];
-        *tape = (struct tape){.task = task};
+        *tape = (struct tape){.task = task, .all = t};
     }
     /* A first run, and one that has turned out not to repeat itself, are made as ever. */
     if (!tape || tape->unfit || !(seen || t->at_once)) return NULL;
@@ -126,6 +162,8 @@ struct tape *tape_for(struct tapes *t, const struct program_run *r)
 }
 
 bool tape_whole(const struct tape *t) { return t->whole; }
+
+struct fiber_pool **tape_stacks(const struct tape *t) { return t->whole ? &t->all->stacks : NULL; }
 
 size_t tape_workspace(const struct tape *t, int rank)
 {
@@ -293,18 +331,19 @@ static void write_rank(struct part *p, struct comm *c, const struct rank_program
 /* --- repeating -------------------------------------------------------------------------------- */
 
 /* Messages without contents leave buffers as they are, so that there are none. */
-static void repeat_rank(const struct part *p, struct comm *c, struct comm_request *request)
+static void repeat_rank(const struct part *p, const struct call *call, struct comm *c,
+                        struct comm_request *request)
 {
     struct comm_request *complete = &request[p->requests];
-    for (int i = 0; i < p->n; i++) {
-        const struct note *x = &p->note[i];
+    for (const struct step *s = p->step; s < p->step + p->n; s++) {
+        const struct call *x = &call[s->call];
         struct comm_request *r = x->at == NO_REQUEST ? NULL : &request[x->at];
         switch ((enum what)x->what) {
         case SEND:
-            comm_isend(c, x->peer, x->tag, NULL, x->bytes, r);
+            comm_isend(c, s->peer, x->tag, NULL, x->bytes, r);
             break;
         case RECEIVE:
-            comm_irecv(c, x->peer, x->tag, NULL, x->bytes, r);
+            comm_irecv(c, s->peer, x->tag, NULL, x->bytes, r);
             break;
         case WAIT:
             comm_wait(c, r ? r : complete);
@@ -313,7 +352,7 @@ static void repeat_rank(const struct part *p, struct comm *c, struct comm_reques
             comm_barrier(c);
             break;
         case WORK:
-            comm_work(c, &p->work[x->at]);
+            comm_work(c, &x->work);
             break;
         case STAGE:
             comm_stage(c, x->at);
@@ -326,22 +365,90 @@ void tape_rank(struct tape *t, struct comm *c, const struct rank_program *rank, 
                void *workspace)
 {
     struct part *p = &t->part[comm_rank(c)];
-    if (t->whole) repeat_rank(p, c, workspace);
+    if (t->whole) repeat_rank(p, t->call, c, workspace);
     else write_rank(p, c, rank, job, workspace);
+}
+
+/* --- from notes to steps ---------------------------------------------------------------------- */
+
+/* The calls found so far, by open addressing with linear probing. */
+struct calls {
+    struct call *call; /* (n) */
+    int n, *slot;      /* slot: (room, a power of two) number of a call + 1; 0: empty */
+    size_t room;
+};
+
+static uint64_t call_digest(const struct call *x)
+{
+    const struct work *w = &x->work;
+    uint64_t h = digest_mix(DIGEST_START, (uint64_t)x->bytes);
+    h = digest_mix(digest_mix(h, (uint64_t)x->tag), (uint64_t)x->at);
+    h = digest_mix(digest_mix(h, (uint64_t)x->what), w->flop);
+    h = digest_mix(digest_mix(h, w->div), w->sqrt);
+    h = digest_mix(digest_mix(h, w->trig), w->bytes);
+    return digest_mix(digest_mix(h, w->call), w->moved);
+}
+
+/* Where `x` is, or belongs. */
+static int *slot_of(const struct calls *all, const struct call *x)
+{
+    size_t at = (size_t)call_digest(x) & (all->room - 1);
+    while (all->slot[at] && memcmp(&all->call[all->slot[at] - 1], x, sizeof *x) != 0)
+        at = (at + 1) & (all->room - 1);
+    return &all->slot[at];
+}
+
+/* At most half full, so that probing stays short. */
+static void grow(struct calls *all)
+{
+    free(all->slot);
+    all->room = all->room ? 4 * all->room : 1024;
+    all->slot = memory_zeroed(all->room, sizeof *all->slot);
+    all->call = memory_resize(all->call, all->room / 2, sizeof *all->call);
+    for (int i = 0; i < all->n; i++) *slot_of(all, &all->call[i]) = i + 1;
+}
+
+static int number_of(struct calls *all, const struct call *x)
+{
+    if ((size_t)all->n == all->room / 2) grow(all);
+    int *slot = slot_of(all, x);
+    if (*slot == 0) {
+        all->call[all->n] = *x;
+        *slot = ++all->n;
+    }
+    return *slot - 1;
+}
+
+/* The notes of all ranks as steps in one block, in the ranks' order; returns its bytes and those of
+ * the calls. */
+static size_t tell_apart(struct tape *t)
+{
+    struct calls all = {0};
+    size_t n = 0;
+    for (int i = 0; i < t->task.nrank; i++) n += (size_t)t->part[i].n;
+    struct step *step = t->step = memory_take(n, sizeof *step);
+    for (int i = 0; i < t->task.nrank; i++) {
+        struct part *p = &t->part[i];
+        p->step = step;
+        for (const struct note *x = p->note; x < p->note + p->n; x++) {
+            struct call call = {.bytes = x->bytes, .tag = x->tag, .at = x->at, .what = x->what};
+            if (x->what == WORK) call.work = p->work[x->at], call.at = 0;
+            *step++ = (struct step){x->peer, number_of(&all, &call)};
+        }
+    }
+    free(all.slot);
+    t->call = all.call;
+    clear_notes(t);
+    return n * sizeof *step + (size_t)all.n * sizeof *all.call;
 }
 
 /* --- the end ---------------------------------------------------------------------------------- */
 
-/* Whether all of it can be repeated; what it takes in *bytes. */
-static bool fit(const struct tape *t, size_t *bytes)
+/* Whether all of it can be repeated. */
+static bool fit(const struct tape *t)
 {
     bool good = true;
-    *bytes = 0;
-    for (int i = 0; i < t->task.nrank; i++) {
-        const struct part *p = &t->part[i];
-        good = good && !p->unfit;
-        *bytes += (size_t)p->room * sizeof *p->note + (size_t)p->work_room * sizeof *p->work;
-    }
+    for (int i = 0; i < t->task.nrank; i++) good = good && !t->part[i].unfit;
     return good;
 }
 
@@ -373,10 +480,10 @@ bool tape_end(struct tapes *all, struct tape *t, struct program_run *r, struct r
         out->stack_peak_bytes = t->stack_peak_bytes;
         return well;
     }
-    size_t bytes;
+    const bool fits = well && fit(t);
+    const size_t bytes = fits ? tell_apart(t) : 0;
     /* A tape that is not whole says nothing: a run that failed, a request too many, no room. */
-    const bool good = well && fit(t, &bytes) && all->bytes + bytes <= MOST_BYTES;
-    if (!good) {
+    if (!fits || all->bytes + bytes > MOST_BYTES) {
         clear(t);
         t->unfit = true;
         return true;

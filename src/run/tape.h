@@ -14,6 +14,8 @@
 #include "measure/run_result.h"
 #include "program/program.h"
 
+struct fiber_pool;
+
 /* The tapes of one process, written at the second run of a task, since most are run once, or
  * `at_once`; destroy accepts NULL. */
 struct tapes;
@@ -27,9 +29,11 @@ void tapes_destroy(struct tapes *t);
 struct tape *tape_for(struct tapes *t, const struct program_run *r);
 
 /* tape_whole: whether it is repeated. tape_workspace: the memory that a rank then needs instead of
- * its program's [B]. */
+ * its program's [B]. tape_stacks: where its stacks stay for the next run, as nobody asks how deep
+ * they are (world.h); NULL where it is not whole. */
 bool tape_whole(const struct tape *t);
 size_t tape_workspace(const struct tape *t, int rank);
+struct fiber_pool **tape_stacks(const struct tape *t);
 
 /* tape_rank: one rank's program, written down or repeated. Ranks of one run may be on several
  * threads. */

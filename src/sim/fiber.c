@@ -70,6 +70,7 @@ struct fiber_pool {
     size_t stride;       /* stack and guard page */
     size_t stack_bytes, page;
     int n, nguard;
+    int room; /* stacks that are mapped, n of them in use */
 };
 
 /* The address sanitizer keeps a shadow of the current stack. Each switch is announced before, with
@@ -123,13 +124,18 @@ static inline void sanitizer_left(struct fiber *f) { (void)f; }
 static inline void sanitizer_fresh(void *memory, size_t bytes) { (void)memory, (void)bytes; }
 #endif
 
+/* Stacks are rounded up to pages: guards are made and stack use is measured in pages. */
+static size_t whole_pages(int64_t stack_bytes, size_t page)
+{
+    return ((size_t)stack_bytes + page - 1) / page * page;
+}
+
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 {
-    /* Round stacks up to pages: guards are made and stack use is measured in pages. MAP_NORESERVE:
-     * ten thousands of stacks may be reserved on a machine that has memory for the touched pages
-     * only. */
+    /* MAP_NORESERVE: ten thousands of stacks may be reserved on a machine that has memory for the
+     * touched pages only. */
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
-    size_t stack = ((size_t)stack_bytes + page - 1) / page * page, stride = stack + page;
+    size_t stack = whole_pages(stack_bytes, page), stride = stack + page;
     char *base = mmap(NULL, stride * (size_t)n, PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
     if (base == MAP_FAILED) {
@@ -148,18 +154,28 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     p->stride = stride;
     p->stack_bytes = stack;
     p->page = page;
-    p->n = n;
+    p->n = p->room = n;
     /* Where not all can be had, fiber_pool_stack_peak looks at the spare pages instead. */
     p->nguard = guard_pages(base, stride, page, n);
     return p;
+}
+
+bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes)
+{
+    if (n > p->room || whole_pages(stack_bytes, p->page) != p->stack_bytes) return false;
+    for (int i = 0; i < p->n; i++) CHECK(p->fiber[i].pool == NULL || p->fiber[i].finished);
+    sanitizer_fresh(p->base, p->stride * (size_t)p->n);
+    memset(p->fiber, 0, (size_t)p->n * sizeof *p->fiber);
+    p->n = n;
+    return true;
 }
 
 void fiber_pool_destroy(struct fiber_pool *p)
 {
     if (!p) return;
     sanitizer_fresh(p->base,
-                    p->stride * (size_t)p->n); /* whoever is mapped here next inherits nothing */
-    munmap(p->base, p->stride * (size_t)p->n);
+                    p->stride * (size_t)p->room); /* whoever is mapped here next inherits nothing */
+    munmap(p->base, p->stride * (size_t)p->room);
     free(p->fiber);
     free(p);
 }

@@ -20,6 +20,11 @@ typedef void fiber_fn(void *argument);
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e);
 void fiber_pool_destroy(struct fiber_pool *p);
 
+/* fiber_pool_again: a pool whose fibers have all returned, for `n` others: their stacks need not be
+ * mapped and touched again, but fiber_pool_stack_peak goes on from those before. False where it has
+ * no room for them, or stacks of another size: nothing has changed then. */
+bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes);
+
 /* fiber_start: make fiber number i (0 .. n-1) ready to run fn(argument) at its first
  * fiber_enter. */
 struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argument);

@@ -60,6 +60,13 @@ struct identity *identity_create(const struct field_table *const *table, int n)
     return x;
 }
 
+struct identity *identity_of_runs(void)
+{
+    int n;
+    const struct field_table *const *table = field_tables(&n);
+    return identity_create(table, n);
+}
+
 void identity_destroy(struct identity *x)
 {
     for (int i = 0; x != NULL && i < x->n; i++) {
@@ -240,9 +247,7 @@ const char *identity_job(struct identity *x, const struct run_spec *job, struct 
 /* For a single run the table of defaults is made and thrown away. */
 void run_identify(struct run_spec *run, struct arena *a)
 {
-    int n;
-    const struct field_table *const *table = field_tables(&n);
-    struct identity *x = identity_create(table, n);
+    struct identity *x = identity_of_runs();
     identity_set(x, run, a);
     identity_destroy(x);
 }
@@ -324,8 +329,6 @@ static bool take_job_line(struct jobs_read *j, char *line, struct arena *a, char
 /* The set that the run belongs to: it stands at its own place. */
 static void join_jobs(struct run_spec *run, struct jobs_read *j, struct arena *a)
 {
-    int ntable;
-    const struct field_table *const *table = field_tables(&ntable);
     if (run->job.number == 0) return;
     /* The text names the others alone. */
     need_jobs(j, run->job.number, a);
@@ -334,7 +337,7 @@ static void join_jobs(struct run_spec *run, struct jobs_read *j, struct arena *a
     struct job_set *set = TAKE(a, 1, struct job_set);
     const struct run_spec **job = TAKE(a, j->n, const struct run_spec *);
     const char **text = TAKE(a, j->n, const char *);
-    struct identity *x = identity_create(table, ntable);
+    struct identity *x = identity_of_runs();
     for (int i = 0; i < j->n; i++) {
         job[i] = &j->job[i];
         text[i] = identity_job(x, job[i], a);

@@ -16,9 +16,10 @@
  * before. */
 struct identity;
 
-/* identity_create: for runs with these `n` tables, field_tables as a rule; `table` is borrowed. The
- * caller owns it. */
+/* identity_create: for runs with these `n` tables; `table` is borrowed. identity_of_runs: with
+ * those of struct run_spec (field_tables). The caller owns it. */
 struct identity *identity_create(const struct field_table *const *table, int n);
+struct identity *identity_of_runs(void);
 
 /* identity_destroy: accepts NULL. */
 void identity_destroy(struct identity *x);

@@ -147,22 +147,13 @@ void machine_fingerprint(const char *config, char hex[LABEL_KEY_LENGTH + 1])
     text_free(&lines);
 }
 
-/* Whether one of the "NAME = VALUE" lines of a person's own program is its n. */
-static bool declares_n(const char *lines)
-{
-    static const char n[] = "n = ";
-    for (const char *line = lines; line != NULL; line = strchr(line, '\n')) {
-        line += *line == '\n';
-        if (strncmp(line, n, strlen(n)) == 0) return true;
-    }
-    return false;
-}
-
 struct run_size run_size(const struct run_spec *run, int nrank)
 {
     struct run_size size;
-    const bool sized = run->kernel.own ? declares_n(run->program.parameters)
-                                       : kernel_spec_needs_model(&run->kernel);
+    char n[32]; /* as text; run->model.nbody is its number */
+    const bool sized = run->kernel.own
+                           ? program_value_find(run->program.parameters, "n", n, sizeof n)
+                           : kernel_spec_needs_model(&run->kernel);
     if (sized) snprintf(size.s, sizeof size.s, ", n = %d, P = %d", run->model.nbody, nrank);
     else snprintf(size.s, sizeof size.s, ", P = %d", nrank);
     return size;

@@ -6,9 +6,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "store/rows.h"
 
@@ -101,10 +103,47 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
     return *kept;
 }
 
+/* Found by their whole texts: most differ within their first bytes. */
+sqlite3_stmt *store_kept(struct store *s, const char *sql)
+{
+    for (int i = 0; i < STORE_KEPT; i++) {
+        struct kept *k = &s->kept[i];
+        if (k->sql == NULL || strcmp(k->sql, sql) != 0) continue;
+        sqlite3_stmt *q = k->statement;
+        free(k->sql);
+        *k = (struct kept){0};
+        return q;
+    }
+    return NULL;
+}
+
+/* What it read is let go, and no binding outlives the text that it borrows. */
+void store_keep(struct store *s, const char *sql, sqlite3_stmt *q)
+{
+    int at = 0;
+    while (at < STORE_KEPT && s->kept[at].sql != NULL) at++;
+    /* All places are taken: one after the other is given up. */
+    if (at == STORE_KEPT) {
+        at = s->replaced;
+        s->replaced = (at + 1) % STORE_KEPT;
+    }
+    struct kept *k = &s->kept[at];
+    sqlite3_finalize(k->statement);
+    free(k->sql);
+    sqlite3_reset(q);
+    sqlite3_clear_bindings(q);
+    *k = (struct kept){memory_text(sql), q};
+}
+
 void store_forget(struct store *s)
 {
     for (int i = 0; i < STATEMENT_COUNT; i++) sqlite3_finalize(s->statement[i]);
     memset(s->statement, 0, sizeof s->statement);
+    for (int i = 0; i < STORE_KEPT; i++) {
+        sqlite3_finalize(s->kept[i].statement);
+        free(s->kept[i].sql);
+    }
+    memset(s->kept, 0, sizeof s->kept);
 }
 
 /* A loop that ends at the first step without a row would take an error for the end. */
@@ -118,6 +157,15 @@ bool store_next(struct store *s, sqlite3_stmt *q, bool *row, struct err *e)
 bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e)
 {
     bool ok = sqlite3_step(statement) == SQLITE_DONE || store_failed(s, e);
+    sqlite3_reset(statement);
+    return ok;
+}
+
+bool store_find_id(struct store *s, sqlite3_stmt *statement, int64_t *id, struct err *e)
+{
+    const int code = sqlite3_step(statement);
+    const bool ok = code == SQLITE_ROW || code == SQLITE_DONE || store_failed(s, e);
+    *id = code == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
     sqlite3_reset(statement);
     return ok;
 }

@@ -13,23 +13,24 @@
 extern const unsigned char schema_image[];
 extern const size_t schema_image_bytes;
 extern const unsigned schema_front_cells, schema_front_page; /* 0: there is no front */
+extern const size_t schema_front_bytes; /* what lies behind them is never looked at by the front */
 
 /* image_write: a whole new database into the empty file `file`, in WAL mode or with a rollback
  * journal. Returns false with errno set. */
 bool image_write(int file, bool wal);
 
-/* image_put: the (size) bytes of a database into the empty file `file`, with the journal as above.
- * Returns false with errno set. */
-bool image_put(int file, const unsigned char *image, size_t size, bool wal);
+/* image_put: the (size) bytes of a database into the empty file `file`, with the journal as above;
+ * all of it where `front` alone is seen of the bytes. Returns false with errno set. */
+bool image_put(int file, const unsigned char *image, size_t size, bool front, bool wal);
 
 /* image_load: the same into the empty database `db` in memory; with `front` what a single run needs
  * of it alone (make_image.c), where the image knows that. Returns false with db's error set. */
 bool image_load(sqlite3 *db, bool front);
 
-/* image_has_front: whether it does. image_hide: of the bytes of such a database only the front is
- * seen; image_show: all is. Nothing may be created or dropped meanwhile. */
+/* image_has_front: whether it does. image_show: from now on all is seen of the bytes of such a
+ * database, by an open connection, too, unless it is in a transaction. Nothing may have been
+ * created or dropped before. */
 bool image_has_front(void);
-void image_hide(unsigned char *bytes);
 void image_show(unsigned char *bytes);
 
 /* image_take: the empty database `db` becomes that of the (size) bytes of sqlite3_malloc, which it

@@ -77,6 +77,16 @@ static sqlite3_int64 last_of_front(sqlite3 *db)
     return last;
 }
 
+/* All pages so far. */
+static sqlite3_int64 size_of(sqlite3 *db)
+{
+    sqlite3_int64 size = 0;
+    unsigned char *image = sqlite3_serialize(db, "main", &size, 0);
+    if (image == NULL) fail("this SQLite has no sqlite3_serialize");
+    sqlite3_free(image);
+    return size;
+}
+
 static unsigned number(const unsigned char *byte, int n)
 {
     unsigned v = 0;
@@ -123,15 +133,17 @@ int main(void)
     rows_database(&t);
     if (sqlite3_open(":memory:", &db) != SQLITE_OK) fail("no memory");
     run_some(db, t.s, true);
+    const sqlite3_int64 front_bytes = size_of(db);
     run_some(db, t.s, false);
     unsigned char *image = sqlite3_serialize(db, "main", &size, 0);
     if (image == NULL) fail("this SQLite has no sqlite3_serialize");
     unsigned page;
     const unsigned cells = cut(image, last_of_front(db), &page);
     printf("/* Made by make_image.c. */\n#include \"store/image.h\"\n\nconst size_t "
-           "schema_image_bytes = %lld;\nconst unsigned schema_front_cells = %u, schema_front_page "
-           "= %u;\nconst unsigned char schema_image[%lld + 1] =\n",
-           (long long)size, cells, page, (long long)size);
+           "schema_image_bytes = %lld, schema_front_bytes = %lld;\nconst unsigned "
+           "schema_front_cells = %u, schema_front_page = %u;\nconst unsigned char "
+           "schema_image[%lld + 1] =\n",
+           (long long)size, (long long)front_bytes, cells, page, (long long)size);
     for (sqlite3_int64 at = 0; at < size; at += LINE_BYTES)
         write_line(image + at, (size_t)(size - at < LINE_BYTES ? size - at : LINE_BYTES));
     printf("    ;\n");

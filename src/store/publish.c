@@ -62,8 +62,8 @@ void publish_drop(struct published *b)
 
 /* Write the (size) bytes of `image`, NULL: an empty database, and link the file to `path`. Flushed
  * before it has its name: a power cut leaves all of it or nothing. */
-bool publish_place(const char *path, const unsigned char *image, size_t size, struct published *b,
-                   struct err *e)
+bool publish_place(const char *path, const unsigned char *image, size_t size, bool front,
+                   struct published *b, struct err *e)
 {
     char *folder = publish_folder(path);
     const bool wal = !publish_network(folder);
@@ -71,7 +71,8 @@ bool publish_place(const char *path, const unsigned char *image, size_t size, st
     remove_stale_logs(path);
     b->file = beside_open(path, &b->name);
     bool ok = b->file >= 0 &&
-              (image != NULL ? image_put(b->file, image, size, wal) : image_write(b->file, wal)) &&
+              (image != NULL ? image_put(b->file, image, size, front, wal)
+                             : image_write(b->file, wal)) &&
               fdatasync(b->file) == 0;
     if (ok && link(b->name, path) != 0) {
         b->late = errno == EEXIST;
@@ -86,7 +87,7 @@ bool publish_place(const char *path, const unsigned char *image, size_t size, st
 bool publish_new(const char *path, struct err *e)
 {
     struct published b = {.file = -1};
-    const bool ok = publish_place(path, NULL, 0, &b, e);
+    const bool ok = publish_place(path, NULL, 0, false, &b, e);
     publish_drop(&b);
     return ok;
 }

@@ -14,12 +14,12 @@ struct published {
     bool late;  /* another program has made the file at its place meanwhile */
 };
 
-/* publish_place: write the (size) bytes of `image`, NULL: an empty database, beside `path`, flush
- * them, and link the file to `path`, where none is there. So no one ever sees, and no failure
- * leaves, half of one. *b begins as {.file = -1}, and ends with publish_drop in any case. Returns
- * false with ERR_CREATE or ERR_IO. */
-bool publish_place(const char *path, const unsigned char *image, size_t size, struct published *b,
-                   struct err *e);
+/* publish_place: write the (size) bytes of `image` (`front`: image_put), NULL: an empty database,
+ * beside `path`, flush them, and link the file to `path`, where none is there. So no one ever sees,
+ * and no failure leaves, half of one. *b begins as {.file = -1}, and ends with publish_drop in any
+ * case. Returns false with ERR_CREATE or ERR_IO. */
+bool publish_place(const char *path, const unsigned char *image, size_t size, bool front,
+                   struct published *b, struct err *e);
 
 /* publish_drop: remove the file beside the place; what was linked stays. */
 void publish_drop(struct published *b);

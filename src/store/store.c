@@ -25,6 +25,7 @@
 #include "store/publish.h"
 #include "store/rows.h"
 #include "store/schema.h"
+#include "store/settings.h"
 #include "store/upgrade.h"
 
 /* Whose database it is, and of which version; *empty for one without tables. Checked before any
@@ -157,9 +158,11 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     struct stat info;
     const enum err_kind kind = mode == STORE_READ ? ERR_NO_INPUT : ERR_CREATE;
     *exists = stat(path, &info) == 0;
-    if (*exists && S_ISDIR(info.st_mode))
+    /* SQLite would tell of the first thing that cannot be done with it, such as "Illegal seek". */
+    if (*exists && !S_ISREG(info.st_mode))
         return err_set(e, mode == STORE_READ ? ERR_DATA : ERR_CREATE,
-                       "%s is a folder, not a database", path);
+                       "%s is %s; a database is a regular file", path,
+                       text_file_kind(info.st_mode));
     if (!*exists && errno != ENOENT && errno != ENOTDIR)
         return err_set(e, kind, "cannot open database %s: %s", path, strerror(errno));
     if (!*exists && mode == STORE_READ)
@@ -288,6 +291,7 @@ void store_close(struct store *s)
     if (s->in_transaction) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     CHECK(sqlite3_close(s->db) == SQLITE_OK);
     if (s->writable && !s->unpublished) remove_logs(s->path);
+    settings_forget(s);
     free(s->path);
     free(s->remark);
     free(s);
@@ -344,5 +348,7 @@ void store_rollback(struct store *s)
     /* Some errors (disk full) have rolled back already. */
     if (!sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     s->in_transaction = false;
-    s->build_id = 0; /* its row may have been forgotten too */
+    /* rows that were put may have been forgotten, too */
+    s->build_id = 0;
+    settings_forget(s);
 }

@@ -61,6 +61,10 @@ bool store_call(struct store *s, const struct run_spec *spec, struct err *e);
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order,
                const struct run_result *r, struct err *e);
 
+/* store_clear: a passing database is to hold other runs: all that it holds go, which takes less
+ * time than another database. */
+bool store_clear(struct store *s, struct err *e);
+
 /* store_note_build: this program in table build, for rows that belong to no run; store_put does it
  * by itself. */
 bool store_note_build(struct store *s, struct err *e);

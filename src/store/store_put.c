@@ -15,20 +15,10 @@
 #include "base/check.h"
 #include "measure/run_row.h"
 #include "spec/run_label.h"
-#include "spec/setting_number.h"
 #include "store/build.h"
 #include "store/rows.h"
 #include "store/run_entries.h"
-
-/* Run a statement that finds one row id; *id 0 when there is none. */
-static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err *e)
-{
-    int code = sqlite3_step(b->statement);
-    bool ok = code == SQLITE_ROW || code == SQLITE_DONE || store_failed(s, e);
-    *id = code == SQLITE_ROW ? sqlite3_column_int64(b->statement, 0) : 0;
-    sqlite3_reset(b->statement);
-    return ok;
-}
+#include "store/settings.h"
 
 /* A run is known by the hash of its settings, its seed and its repetition. */
 static bool bind_identity(struct store *s, const struct run_spec *spec, struct binding *b,
@@ -77,7 +67,7 @@ int64_t store_run_id(struct store *s, const struct run_spec *spec)
     struct err ignored = {0};
     struct binding b;
     int64_t id = 0;
-    if (bind_identity(s, spec, &b, &ignored)) find_id(s, &b, &id, &ignored);
+    if (bind_identity(s, spec, &b, &ignored)) store_find_id(s, b.statement, &id, &ignored);
     return id;
 }
 
@@ -95,7 +85,9 @@ static bool find_build(struct store *s, struct err *e)
         bind_text(&b, build.git);
         bind_text(&b, build.compiler);
         bind_text(&b, build.flags);
-        if (add ? !store_step(s, b.statement, e) : !find_id(s, &b, &s->build_id, e)) return false;
+        if (add ? !store_step(s, b.statement, e)
+                : !store_find_id(s, b.statement, &s->build_id, e))
+            return false;
     }
     return true;
 }
@@ -121,66 +113,6 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     run_row_free(&row);
     if (ok) *id = sqlite3_last_insert_rowid(s->db);
     return ok;
-}
-
-/* The value of a setting as a number, which figures and queries need; NULL where it is none. */
-static void bind_number(sqlite3_stmt *add, const char *key, int nkey, const char *value, int nvalue)
-{
-    double number;
-    enum unit unit;
-    char *name = memory_text_part(key, (size_t)nkey),
-         *text = memory_text_part(value, (size_t)nvalue);
-    if (setting_number(name, text, &number, &unit))
-        store_bound(sqlite3_bind_double(add, 3, number));
-    else store_bound(sqlite3_bind_null(add, 3));
-    store_bound(sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC));
-    free(name);
-    free(text);
-}
-
-/* The row of a setting, made when it is new: thousands of runs share most of their settings. */
-static bool setting_id(struct store *s, const char *key, int nkey, const char *value, int nvalue,
-                       int64_t *id, struct err *e)
-{
-    /* Find first, unlike a build: nearly always the setting is there. */
-    for (int add = 0; add < 2; add++) {
-        struct binding b;
-        if (!bind_start(s, add ? STATEMENT_SETTING_ADD : STATEMENT_SETTING_FIND, &b, e))
-            return false;
-        /* Key and value as parts of the line: no copies. */
-        store_bound(sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC));
-        store_bound(sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC));
-        if (add) bind_number(b.statement, key, nkey, value, nvalue);
-        if (!add && !find_id(s, &b, id, e)) return false;
-        if (!add && *id != 0) return true;
-        if (add && !store_step(s, b.statement, e)) return false;
-    }
-    *id = sqlite3_last_insert_rowid(s->db);
-    return true;
-}
-
-/* The "key = value" lines of the canonical configuration. Settings of a passing database are never
- * asked for. */
-static bool put_settings(struct store *s, int64_t run, const char *config, struct err *e)
-{
-    if (s->passing) return true;
-    for (const char *line = config; line != NULL && *line;) {
-        const char *end = strchrnul(line, '\n'),
-                   *equals = memmem(line, (size_t)(end - line), " = ", 3);
-        if (equals != NULL) {
-            int64_t setting;
-            struct binding b;
-            if (!setting_id(s, line, (int)(equals - line), equals + 3, (int)(end - equals - 3),
-                            &setting, e) ||
-                !bind_start(s, STATEMENT_RUN_SETTING, &b, e))
-                return false;
-            bind_int(&b, run);
-            bind_int(&b, setting);
-            if (!store_step(s, b.statement, e)) return false;
-        }
-        line = *end ? end + 1 : end;
-    }
-    return true;
 }
 
 /* Rows whose key is (run, number). */
@@ -309,11 +241,18 @@ static bool remove_old(struct store *s, const struct run_spec *spec, struct err 
 {
     struct binding b;
     int64_t old;
-    if (!bind_identity(s, spec, &b, e) || !find_id(s, &b, &old, e)) return false;
+    if (!bind_identity(s, spec, &b, e) || !store_find_id(s, b.statement, &old, e)) return false;
     if (old == 0) return true;
     if (!bind_start(s, STATEMENT_RUN_DELETE, &b, e)) return false;
     bind_int(&b, old);
     return store_step(s, b.statement, e);
+}
+
+/* What belongs to runs goes with them (ON DELETE CASCADE). */
+bool store_clear(struct store *s, struct err *e)
+{
+    struct binding b;
+    return bind_start(s, STATEMENT_RUN_CLEAR, &b, e) && store_step(s, b.statement, e);
 }
 
 bool store_note_build(struct store *s, struct err *e) { return find_build(s, e); }
@@ -327,7 +266,7 @@ bool store_put(struct store *s, const struct run_spec *spec, const struct run_or
     CHECK(s->writable);
     if (alone && !store_begin(s, e)) return false;
     bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, order, r, &run, e) &&
-              put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) &&
+              settings_put(s, run, spec->config_text, e) && put_stages(s, run, r, e) &&
               put_baselines(s, run, r, e) && put_errors(s, run, r, e) &&
               put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e) &&
               put_lines(s, run, r, e);

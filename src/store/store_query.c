@@ -84,15 +84,13 @@ static bool prepare_shown(struct store *s, const char *sql, sqlite3_stmt **q, co
 {
     if (sqlite3_prepare_v2(s->db, sql, -1, q, rest) == SQLITE_OK) return true;
     if (!s->front || s->in_transaction) return store_failed(s, e);
-    return store_show(s, e) && (sqlite3_prepare_v2(s->db, sql, -1, q, rest) == SQLITE_OK ||
-                                store_failed(s, e));
+    store_show(s);
+    return sqlite3_prepare_v2(s->db, sql, -1, q, rest) == SQLITE_OK || store_failed(s, e);
 }
 
-/* One statement with its parameters bound, or NULL with *e set. Everything that a user can write
- * wrongly is told here: more than one statement, none, a change in a database that is only read,
- * too few parameters. */
-static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param,
-                             struct err *e)
+/* One statement, or NULL with *e set. What a user can write wrongly is told here: more than one
+ * statement, none, a change in a database that is only read. */
+static sqlite3_stmt *prepare_new(struct store *s, const char *sql, struct err *e)
 {
     sqlite3_stmt *q = NULL;
     const char *rest = "";
@@ -120,6 +118,19 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         sqlite3_finalize(q);
         return NULL;
     }
+    return q;
+}
+
+/* The same with its parameters bound, which may be too few. A passing database is asked the same
+ * for one set of runs after the other, and its tables stay what they are, so that a kept statement
+ * is what a new one would be; elsewhere the names of its columns could be of tables that have
+ * changed since. */
+static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param,
+                             struct err *e)
+{
+    sqlite3_stmt *q = s->passing ? store_kept(s, sql) : NULL;
+    if (q == NULL) q = prepare_new(s, sql, e);
+    if (q == NULL) return NULL;
     if (sqlite3_bind_parameter_count(q) != nparam) {
         err_set(e, ERR_DATA, "the query has %d parameters, %d were given",
                 sqlite3_bind_parameter_count(q), nparam);
@@ -129,6 +140,13 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
     for (int i = 0; i < nparam; i++)
         store_bound(sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC));
     return q;
+}
+
+/* The statement of prepare, which nobody reads any more. */
+static void let_go(struct store *s, const char *sql, sqlite3_stmt *q)
+{
+    if (s->passing) store_keep(s, sql, q);
+    else sqlite3_finalize(q);
 }
 
 /* Row by row: a result of any size takes the memory of one row. */
@@ -151,7 +169,7 @@ bool store_query(struct store *s, const char *sql, int nparam, const char *const
     }
     /* SQLITE_ROW: the row function stopped the query, which is no error of the database. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
-    sqlite3_finalize(q);
+    let_go(s, sql, q);
     return ok;
 }
 
@@ -174,22 +192,23 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
     }
     /* As in store_query: a row function that stops the query makes no error. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
-    sqlite3_finalize(q);
+    let_go(s, sql, q);
     return ok;
 }
 
-/* Prepare, bind, step and finalize a statement that returns nothing. */
+/* Bind and step a statement that returns nothing. Rows come one after the other from the same text,
+ * whose preparing takes longer than a row: it is kept. */
 static bool run_once(struct store *s, const char *sql, int nvalue, const struct store_value *value,
                      struct err *e)
 {
-    sqlite3_stmt *q = NULL;
     /* Rows are inserted only through a connection that was opened for writing: else it is our
      * mistake, not the user's. */
     CHECK(s->writable);
-    if (!prepare_shown(s, sql, &q, NULL, e)) return false;
+    sqlite3_stmt *q = store_kept(s, sql);
+    if (q == NULL && !prepare_shown(s, sql, &q, NULL, e)) return false;
     for (int i = 0; i < nvalue; i++) bind_value(q, i + 1, &value[i]);
     bool ok = sqlite3_step(q) == SQLITE_DONE || store_failed(s, e);
-    sqlite3_finalize(q);
+    store_keep(s, sql, q);
     return ok;
 }
 

@@ -187,10 +187,7 @@ static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
 /* Runs in the order of their ids: of two equal ones the older keeps the identity. */
 bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
 {
-    int ntable;
-    const struct field_table *const *table = field_tables(&ntable);
-    struct work w = {
-        .s = s, .identity = identity_create(table, ntable), .version = version, .kept = kept};
+    struct work w = {.s = s, .identity = identity_of_runs(), .version = version, .kept = kept};
     bool ok = open_work(&w, e);
     bool row = true;
     while (ok && (ok = store_next(s, w.select, &row, e)) && row) {

@@ -21,18 +21,17 @@ static bool add_to(const char *path, const char *beside, struct err *e)
     return ok;
 }
 
-/* Statements of the old database would not know the new one. */
-bool store_show(struct store *s, struct err *e)
+/* In place: a connection whose database is exchanged, as by sqlite3_deserialize, goes on using the
+ * schema of the old one for json_each (SQLite 3.40). */
+void store_show(struct store *s)
 {
-    if (!s->front) return true;
+    if (!s->front) return;
     CHECK(!s->in_transaction);
     sqlite3_int64 size = 0;
-    store_forget(s);
-    unsigned char *all = sqlite3_serialize(s->db, "main", &size, 0);
-    if (all == NULL) check_memory(0);
-    image_show(all);
+    unsigned char *bytes = sqlite3_serialize(s->db, "main", &size, SQLITE_SERIALIZE_NOCOPY);
+    CHECK(bytes != NULL); /* a front is one of bytes that lie in memory */
+    image_show(bytes);
     s->front = false;
-    return image_take(s->db, all, (size_t)size) || store_failed(s, e);
 }
 
 bool store_publish(struct store *s, struct err *e)
@@ -46,11 +45,10 @@ bool store_publish(struct store *s, struct err *e)
                   *copy = own == NULL ? sqlite3_serialize(s->db, "main", &size, 0) : NULL;
     if (own == NULL && copy == NULL) check_memory(0);
     /* The file has all tables and views; what lies here goes on as before. */
-    if (s->front) image_show(own != NULL ? own : copy);
-    const bool ok = publish_place(s->path, own != NULL ? own : copy, (size_t)size, &b, e) &&
-                    (!b.late || add_to(s->path, b.name, e));
+    const bool ok =
+        publish_place(s->path, own != NULL ? own : copy, (size_t)size, s->front, &b, e) &&
+        (!b.late || add_to(s->path, b.name, e));
     publish_drop(&b);
-    if (s->front && own != NULL) image_hide(own);
     sqlite3_free(copy);
     s->unpublished = !ok;
     return ok;

@@ -156,6 +156,36 @@ bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a,
     return begin(r, spec, nspec, a, &size, e) && climb(r, spec, size, nspec, NETWORK, e);
 }
 
+bool accuracy_programs(const struct run_spec *spec, int nspec, struct arena *a,
+                       struct accuracy_report *r, struct err *e)
+{
+    struct run_estimate *size = NULL;
+    return begin(r, spec, nspec, a, &size, e) && climb(r, spec, size, nspec, ARITHMETIC, e) &&
+           climb(r, spec, size, nspec, INTEGRATION, e);
+}
+
+/* A ladder that was not climbed has nothing to choose from. */
+static bool is_climbed(const struct accuracy_report *r, const char *ladder)
+{
+    for (int i = 0; i < r->nrung; i++)
+        if (strcmp(r->rung[i].ladder, ladder) == 0) return true;
+    return false;
+}
+
+void accuracy_decide(struct accuracy_report *r, double within)
+{
+    for (int k = 0; k < LADDERS; k++) {
+        if (!is_climbed(r, ladder_name[k])) continue;
+        r->choice[r->nchoice++] = accuracy_choose(r, ladder_name[k], ladder_quantity[k],
+                                                  within > 0 ? within : usual_tolerance[k]);
+        /* A tolerance meant for simulated times says little about a motion: its usual one is
+         * answered, too. */
+        if (k == INTEGRATION && within > 0 && within != usual_tolerance[k])
+            r->choice[r->nchoice++] =
+                accuracy_choose(r, ladder_name[k], ladder_quantity[k], usual_tolerance[k]);
+    }
+}
+
 bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet,
                       struct arena *a, struct accuracy_report *r, struct err *e)
 {
@@ -167,16 +197,6 @@ bool accuracy_measure(const struct run_spec *spec, int nspec, double within, boo
         progress_show(&p, k + 1);
     }
     progress_end(&p);
-    for (int k = 0; k < LADDERS; k++) {
-        /* A ladder that was not climbed has taken no time and has nothing to choose from. */
-        if (r->host_s[k] == 0) continue;
-        r->choice[r->nchoice++] = accuracy_choose(r, ladder_name[k], ladder_quantity[k],
-                                                  within > 0 ? within : usual_tolerance[k]);
-        /* A tolerance meant for simulated times says little about a motion: its usual one is
-         * answered, too. */
-        if (k == INTEGRATION && within > 0 && within != usual_tolerance[k])
-            r->choice[r->nchoice++] =
-                accuracy_choose(r, ladder_name[k], ladder_quantity[k], usual_tolerance[k]);
-    }
+    accuracy_decide(r, within);
     return true;
 }

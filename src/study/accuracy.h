@@ -43,9 +43,17 @@ bool accuracy_measure(const struct run_spec *spec, int nspec, double within, boo
                       struct arena *a, struct accuracy_report *r, struct err *e);
 
 /* accuracy_network: the network ladder alone, at the largest point of `spec` (nspec) that takes
- * seconds; no choices. Returns as accuracy_measure. */
+ * seconds; no choices. accuracy_programs: the other two, whose choices rest on no seconds of this
+ * computer, so that they may be climbed beside other work. Both return as accuracy_measure. */
 bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a,
                       struct accuracy_report *r, struct err *e);
+bool accuracy_programs(const struct run_spec *spec, int nspec, struct arena *a,
+                       struct accuracy_report *r, struct err *e);
+
+/* accuracy_append: rungs (n) of another report on the same scenario, behind those of `r`.
+ * accuracy_decide: the choices of all ladders in `r`, once; `within` as for accuracy_measure. */
+void accuracy_append(struct accuracy_report *r, const struct accuracy_rung *rung, int n);
+void accuracy_decide(struct accuracy_report *r, double within);
 
 /* accuracy_choose: the cheapest rung of ladder `ladder` for `quantity` with status ok and error <=
  * tolerance. Cost is the host's time on the network ladder, the machine's on the others; rungs

@@ -5,12 +5,10 @@
 #include "base/text.h"
 #include "study/accuracy_ladder.h"
 
-struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung,
-                                 const char *quantity, const char *reference)
+/* The list doubles when it is full: memory of an arena is not given back, so the copies left behind
+ * add up to at most the size of the last. */
+static struct accuracy_rung *rung_add(struct accuracy_report *r)
 {
-    /* The list doubles when it is full: memory of an arena is not given back, so the copies left
-     * behind add up to at most the size of the last. */
-    struct accuracy_report *r = l->report;
     if (r->nrung == r->room) {
         int room = r->room > 0 ? 2 * r->room : 64;
         struct accuracy_rung *larger = TAKE(r->arena, room, struct accuracy_rung);
@@ -18,7 +16,18 @@ struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const cha
         r->rung = larger;
         r->room = room;
     }
-    struct accuracy_rung *x = &r->rung[r->nrung++];
+    return &r->rung[r->nrung++];
+}
+
+void accuracy_append(struct accuracy_report *r, const struct accuracy_rung *rung, int n)
+{
+    for (int i = 0; i < n; i++) *rung_add(r) = rung[i];
+}
+
+struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung,
+                                 const char *quantity, const char *reference)
+{
+    struct accuracy_rung *x = rung_add(l->report);
     text_copy(x->ladder, sizeof x->ladder, l->name);
     text_copy(x->at, sizeof x->at, l->at);
     text_copy(x->family, sizeof x->family, l->family);

@@ -11,7 +11,7 @@
 /* The identity of a run from which everything is taken that a family may differ in: sizes,
  * level, tolerance, seeds, recording, scenario. Equal identities are runs whose errors are
  * alike. */
-void level_family(const struct run_spec *spec, char hex[65])
+void level_family_by(struct identity *by, const struct run_spec *spec, char hex[65])
 {
     /* a copy: `spec` keeps its sizes */
     struct run_spec x = *spec;
@@ -23,9 +23,16 @@ void level_family(const struct run_spec *spec, char hex[65])
     x.machine.network.tolerance = 0;
     x.seed = x.model.seed = 0;
     x.record = (struct record_spec){0};
-    run_identify(&x, a);
+    identity_set(by, &x, a);
     memcpy(hex, x.config_hash, sizeof x.config_hash);
     arena_destroy(a);
+}
+
+void level_family(const struct run_spec *spec, char hex[65])
+{
+    struct identity *by = identity_of_runs();
+    level_family_by(by, spec, hex);
+    identity_destroy(by);
 }
 
 int level_cheapest(const struct level_error *error, int n, double tolerance)

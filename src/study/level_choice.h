@@ -8,11 +8,15 @@
 #define STUDY_LEVEL_CHOICE_H
 
 #include "base/arena.h"
+#include "spec/identity.h"
 #include "spec/run_spec.h"
 
 /* level_family: SHA-256, in hexadecimal, of the settings of `spec` without its numbers of ranks and
  * bodies, level, tolerance, seeds, recording and scenario. */
 void level_family(const struct run_spec *spec, char hex[65]);
+
+/* level_family_by: the same by what identified many such runs, which takes half the time. */
+void level_family_by(struct identity *by, const struct run_spec *spec, char hex[65]);
 
 /* What a ladder knows of one level. */
 struct level_error {

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
-#include "base/pipe.h"
+#include "base/whole.h"
 
 enum { MOST_WORKERS = 64 };
 
@@ -56,7 +56,7 @@ static _Noreturn void work(const struct crew *c, int answers)
         err_clear(&h.error);
         h.ok = c->p->make(c->p->context, i, &data, &h.bytes, &h.error);
         if (!h.ok) h.bytes = 0;
-        if (!pipe_write(answers, &h, sizeof h) || !pipe_write(answers, data, h.bytes)) break;
+        if (!write_whole(answers, &h, sizeof h) || !write_whole(answers, data, h.bytes)) break;
     }
     _exit(0);
 }
@@ -99,12 +99,12 @@ static bool take_some(struct crew *c, struct err *e)
 static bool receive(struct crew *c, int fd)
 {
     struct head h;
-    if (!pipe_read(fd, &h, sizeof h)) return false;
+    if (!read_whole(fd, &h, sizeof h)) return false;
     CHECK(h.piece >= 0 && h.piece < c->p->n);
     struct waiting *w = &c->waiting[h.piece];
     *w = (struct waiting){.head = h, .data = malloc(h.bytes + 1)};
     CHECK(w->data != NULL);
-    w->here = pipe_read(fd, w->data, h.bytes);
+    w->here = read_whole(fd, w->data, h.bytes);
     return w->here;
 }
 

@@ -69,10 +69,8 @@ static bool make_scene(void *context, int i, const void **data, size_t *bytes, s
 static bool take_scene(void *context, int i, const void *data, size_t bytes, struct err *e)
 {
     struct making *k = context;
-    const struct stability_row *row = data;
     (void)e;
-    for (size_t at = 0; at < bytes / sizeof *row; at++)
-        *row_add(k->report, row[at].subject, row[at].algorithm, row[at].precision) = row[at];
+    stability_append(k->report, data, (int)(bytes / sizeof(struct stability_row)));
     progress_show(&k->progress, i + 1);
     return true;
 }
@@ -144,10 +142,24 @@ bool stability_measure(const struct run_spec *spec, int nspec, const struct stab
     const struct stability_scene *suite = scene_list(&n);
     *r = (struct stability_report){.arena = a, .suite = "suite"};
     if (nspec > 0) text_copy(r->suite, sizeof r->suite, spec[0].scenario);
+    if (o->scenes > 0) n = o->scenes;
     bool good = nspec > 0 ? measure_points(r, spec, nspec, o, e)
-                          : measure_scenes(r, suite, n, o, e);
+                          : measure_scenes(r, suite + o->first, n, o, e);
     r->host_s = host_seconds() - begin;
     return good;
+}
+
+int stability_suite_size(void)
+{
+    int n;
+    scene_list(&n);
+    return n;
+}
+
+int stability_suite_bodies(int i)
+{
+    int n;
+    return scene_list(&n)[i].spec.nbody;
 }
 
 /* --- printing --------------------------------------------------------------------------------- */

@@ -24,6 +24,7 @@ struct stability_report {
 
 struct stability_options {
     int most_bodies; /* leave out larger scenes; 0: none */
+    int first, scenes; /* of the built-in suite: the first scene, and how many; 0: all of them */
     /* processes that measure scenes, 0: as many as processors; no row depends on it */
     int workers;
     bool quiet;
@@ -37,6 +38,14 @@ struct stability_options {
  * worker dies. */
 bool stability_measure(const struct run_spec *spec, int nspec, const struct stability_options *o,
                        struct arena *a, struct stability_report *r, struct err *e);
+
+/* stability_suite_size, stability_suite_bodies: the scenes of the built-in suite, and the bodies of
+ * scene i. */
+int stability_suite_size(void);
+int stability_suite_bodies(int i);
+
+/* stability_append: rows (n) of another report on the same suite, behind those of `r`. */
+void stability_append(struct stability_report *r, const struct stability_row *row, int n);
 
 /* stability_print: a line a row, then the counts and the worst scene. stability_print_json: the
  * same as one document. */

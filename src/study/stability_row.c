@@ -41,3 +41,9 @@ void row_grade(struct stability_row *row, double error, bool single)
     if (!isfinite(error)) text_copy(row->reason, sizeof row->reason,
                                     "the result is not a finite number");
 }
+
+void stability_append(struct stability_report *r, const struct stability_row *row, int n)
+{
+    for (int i = 0; i < n; i++)
+        *row_add(r, row[i].subject, row[i].algorithm, row[i].precision) = row[i];
+}

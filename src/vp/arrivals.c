@@ -48,7 +48,7 @@ void arrivals_add(struct world *w, struct message *m)
  * time, port and number. */
 void arrivals_give(struct world *w)
 {
-    enum { FAR = 9, MIDDLE = 6, NEAR = 3 };
+    enum { FAR = ARRIVALS_FAR, MIDDLE = ARRIVALS_MIDDLE, NEAR = ARRIVALS_NEAR };
     struct arrivals *a = w->arrivals;
     for (int i = 0; i < a->n && !w->stopped; i++) {
         if (i + FAR < a->n) arrivals_warm_message(a->message[i + FAR]);

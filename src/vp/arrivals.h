@@ -23,7 +23,10 @@ void arrivals_give(struct world *w);
 bool arrivals_step(struct world *w);
 
 /* All that a receiver touches lies cold in memory, each behind the one before; a list of messages
- * tells early who is next. arrivals_warm_message: ask for m. */
+ * tells early who is next: how many messages ahead each of the three steps is asked for. */
+enum { ARRIVALS_FAR = 9, ARRIVALS_MIDDLE = 6, ARRIVALS_NEAR = 3 };
+
+/* arrivals_warm_message: ask for m. */
 static inline void arrivals_warm_message(const struct message *m)
 {
     for (int line = 0; line < 3; line++) __builtin_prefetch((const char *)m + 64 * line);

@@ -18,19 +18,21 @@ static int peer_of(const struct vp *v)
                                                                                : -1;
 }
 
-/* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its
- * lower 32 bits. Room mpi keeps context and plane above the lower 32 bits, which mean
- * nothing to a reader. */
+/* "at most 80 bytes, any tag, from any rank"; "a message" where any number of bytes will do. A tag
+ * may carry further numbers above its lower 32 bits. Room mpi keeps context and plane there, which
+ * mean nothing to a reader. */
 static int describe_receive(const struct comm_request *r, char *s, int size)
 {
-    char tag[48] = "any tag", from[24] = "any rank";
+    char tag[48] = "any tag", from[24] = "any rank", what[48] = "a message";
     if (r->mask & UINT32_MAX)
         snprintf(tag, sizeof tag, "tag %lld", (long long)(r->tag & UINT32_MAX));
     if (r->peer >= 0) snprintf(from, sizeof from, "rank %d", r->peer);
     if (r->kind == RECEIVE_PROBE)
         return snprintf(s, size, "probes for a message, %s, from %s", tag, from);
-    return snprintf(s, size, "waits to receive %s%lld bytes, %s, from %s",
-                    r->kind == RECEIVE_EXACT ? "" : "at most ", (long long)r->bytes, tag, from);
+    if (r->bytes < INT64_MAX)
+        snprintf(what, sizeof what, "%s%lld bytes", r->kind == RECEIVE_EXACT ? "" : "at most ",
+                 (long long)r->bytes);
+    return snprintf(s, size, "waits to receive %s, %s, from %s", what, tag, from);
 }
 
 static int describe(const struct vp *v, char *s, int size)

@@ -12,13 +12,12 @@
 #include "base/check.h"
 #include "base/progress.h"
 #include "machine/node_use.h"
-#include "machine/placement_jobs.h"
 #include "measure/run_heartbeat.h"
 #include "sim/stack_fault.h"
 #include "vp/arrivals.h"
 #include "vp/explain.h"
+#include "vp/ground.h"
 #include "vp/meeting.h"
-#include "vp/offload.h"
 #include "vp/team.h"
 #include "vp/world_parts.h"
 
@@ -119,13 +118,8 @@ static bool build(struct jobs *j, struct err *e)
     for (int i = 0; i < j->n; i++)
         place[i] =
             (struct placement_job){j->job[i].name, j->job[i].placement, j->job[i].nrank};
-    if (!node_use_check(w->machine, e) || !offload_check(w->machine, e)) return false;
-    w->topology = topology_create(&w->machine->topology, w->scratch, e);
-    if (!w->topology) return false;
-    /* All at once: a place that one job has is none for another. */
     j->placement = TAKE(w->scratch, j->n, struct placement);
-    if (!placement_create_jobs(j->placement, w->machine, w->topology, j->n, place, w->scratch, e) ||
-        !world_make_network(w, j->links, e))
+    if (!ground_make(w, j->placement, j->n, place, e) || !world_make_network(w, j->links, e))
         return false;
     /* Before anything is sent: each job has an account of its own. */
     net_count_jobs(w->net, j->n);

@@ -3,15 +3,30 @@
 #include "spec/topology_list.h"
 #include "vp/windows.h"
 
+/* What of a program keeps its ranks in the order of time, whatever the machine; NULL: nothing. */
+static const char *by_program(const struct world_load *load)
+{
+    if (load->foreign) return "the program is not a built-in one";
+    if (load->meets) return "the network does a collective of all ranks";
+    return load->timed ? "receives from anybody and tests depend on time" : NULL;
+}
+
+/* What of the records. */
+static const char *by_record(const struct record_spec *record)
+{
+    if (record->spans) return "a timeline is recorded";
+    if (record->balance) return "computing follows a table of shares";
+    return record->path ? "a critical path is recorded" : NULL;
+}
+
 /* In the order in which a user would change it: the program, the machine, what is recorded. The
  * conditions are those under which the ranks are a Kahn network (team.h), and what keeps its
  * records in the order of events. */
 const char *world_ordered(const struct machine_spec *m, const struct world_load *load,
                           const struct record_spec *record)
 {
-    if (load->foreign) return "the program is not a built-in one";
-    if (load->meets) return "the network does a collective of all ranks";
-    if (load->timed) return "receives from anybody and tests depend on time";
+    const char *why = by_program(load);
+    if (why) return why;
     if (m->network.level != LEVEL_LOGGP || topology_has(m->topology.family, TOPOLOGY_SHARED))
         return "messages wait for each other at links (network.level loggp has none)";
     if (m->topology.nfailed_link + m->topology.nfailed_router > 0)
@@ -21,9 +36,7 @@ const char *world_ordered(const struct machine_spec *m, const struct world_load 
     if (!software_all_eager(&m->software, load->largest_message))
         return "large messages shake hands";
     if (m->noise.background_load > 0) return "other jobs' traffic follows time";
-    if (record->spans) return "a timeline is recorded";
-    if (record->balance) return "computing follows a table of shares";
-    return record->path ? "a critical path is recorded" : NULL;
+    return by_record(record);
 }
 
 /* Whether level `link` serves the network's resources: on a bus all levels do. */
@@ -78,7 +91,7 @@ static bool answers_apart(const struct software_spec *s)
 
 /* Beyond what keeps ranks from going on in any order: what acts between ranks beside the network,
  * and what the network does with a message at the moment when it is sent. */
-static const char *why_alone(const struct machine_spec *m, const struct world_load *load)
+static const char *by_network(const struct machine_spec *m, const struct world_load *load)
 {
     const bool several = m->topology.processors_per_node > 1;
     if (!by_link(m) && m->network.level != LEVEL_LOGGP)
@@ -96,14 +109,10 @@ static const char *why_alone(const struct machine_spec *m, const struct world_lo
 const char *windows_alone(const struct machine_spec *m, const struct world_load *load,
                           const struct record_spec *record)
 {
-    if (load->foreign) return "the program is not a built-in one";
-    if (load->meets) return "the network does a collective of all ranks";
-    if (load->timed) return "receives from anybody and tests depend on time";
-    const char *why = why_alone(m, load);
+    const char *why = by_program(load);
+    if (!why) why = by_network(m, load);
+    if (!why) why = by_record(record);
     if (why) return why;
-    if (record->spans) return "a timeline is recorded";
-    if (record->balance) return "computing follows a table of shares";
-    if (record->path) return "a critical path is recorded";
     /* A window of half of it must have a length. */
     return windows_lookahead(m, load) < 2 ? "messages take no time from node to node" : NULL;
 }

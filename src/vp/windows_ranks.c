@@ -10,7 +10,7 @@
 /* A list of messages tells early who is next. */
 static inline void warm_up(const struct mail *in, int i)
 {
-    enum { FAR = 9, MIDDLE = 6, NEAR = 3 };
+    enum { FAR = ARRIVALS_FAR, MIDDLE = ARRIVALS_MIDDLE, NEAR = ARRIVALS_NEAR };
     if (i + FAR < in->n) arrivals_warm_message(in->entry[i + FAR].m);
     if (i + MIDDLE < in->n) arrivals_warm_receiver(windows_receiver(in->entry[i + MIDDLE].m));
     if (i + NEAR < in->n) arrivals_warm_stack(windows_receiver(in->entry[i + NEAR].m));

@@ -17,6 +17,7 @@
 #include "sim/stack_fault.h"
 #include "vp/arrivals.h"
 #include "vp/explain.h"
+#include "vp/ground.h"
 #include "vp/shared.h"
 #include "vp/matching.h"
 #include "vp/offload.h"
@@ -232,15 +233,35 @@ static bool by_windows(const struct world *w)
            !world_alone(w->machine, w->load, w->record);
 }
 
+/* Stacks that an earlier run has left, if they fit. */
+static struct fiber_pool *stacks_take(const struct world *w, struct err *e)
+{
+    struct fiber_pool **kept = w->load->stacks, *p = kept ? *kept : NULL;
+    if (!p || !fiber_pool_again(p, w->nrank, stack_bytes(w)))
+        return fiber_pool_create(w->nrank, stack_bytes(w), e);
+    *kept = NULL;
+    return p;
+}
+
+/* For the next run, as long as their touched pages are few. Ranks that have not ended are left in
+ * the middle of their stacks. */
+static void stacks_leave(struct world *w)
+{
+    enum { MOST_KEPT = 1024 };
+    struct fiber_pool **kept = w->load->stacks, *p = w->fibers;
+    if (kept && p && w->nfinished == w->nrank && !w->failed && w->nrank <= MOST_KEPT) {
+        p = *kept;
+        *kept = w->fibers;
+    }
+    fiber_pool_destroy(p);
+}
+
 /* From the outside in: topology, places of ranks, network, stacks. Whatever fails has set
  * the error; world_run gives everything back. */
 static bool build(struct world *w, struct err *e)
 {
     const struct machine_spec *m = w->machine;
-    if (!node_use_check(m, e) || !offload_check(m, e)) return false;
-    w->topology = topology_create(&m->topology, w->scratch, e);
-    if (!w->topology) return false;
-    if (!placement_create(&w->placement, m, w->topology, w->nrank, w->scratch, e)) return false;
+    if (!ground_make(w, &w->placement, 1, NULL, e)) return false;
     const struct node_use use = node_use_placed(m, &w->placement, w->load->working_set);
     w->node_cost = node_use_cost(&m->node, &use);
     w->software = software_cost_used(m, &use);
@@ -254,7 +275,7 @@ static bool build(struct world *w, struct err *e)
     if (w->record->path && w->record->slack) path_keep_losers(w->path);
     if (w->record->balance)
         w->balanced = TAKE(w->scratch, size_product(w->nrank, w->nstage + 1), int64_t);
-    w->fibers = fiber_pool_create(w->nrank, stack_bytes(w), e);
+    w->fibers = stacks_take(w, e);
     return w->fibers != NULL;
 }
 
@@ -369,7 +390,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
     bool ok = build(&w, e);
     if (ok) run(&w, seed);
     path_log_destroy(w.path);
-    fiber_pool_destroy(w.fibers);
+    stacks_leave(&w);
     sim_destroy(w.sim);
     /* Somebody who has many runs keeps the memory for the next one. */
     if (load->scratch) arena_release(load->scratch, begin);

@@ -15,6 +15,8 @@
 
 typedef void world_program(struct comm *c, void *context);
 
+struct fiber_pool;
+
 /* What the virtual processors are to do. */
 struct world_load {
     int nrank;
@@ -51,6 +53,10 @@ struct world_load {
     int job_run;               /* number of the run among those of these processes */
     /* memory of the machine, of which nothing is left taken at the end; NULL: fresh */
     struct arena *scratch;
+    /* of a run on one thread: stacks of an earlier one, NULL at first, and where those of this one
+     * stay when it ends well, owned by the caller. How deep its own were is not told then. NULL:
+     * fresh ones, which do not stay */
+    struct fiber_pool **stacks;
     /* for tests: threads stop for a while at random, by this seed; 0: they do not */
     uint64_t delays;
     /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
@@ -70,6 +76,13 @@ struct world_load {
 bool world_run(const struct machine_spec *m, const struct world_load *load,
                const struct record_spec *record, uint64_t seed, struct arena *a,
                struct run_result *out, struct err *e);
+
+/* world_fits: whether world_run would begin with `nrank` ranks on machine m, or world_run_jobs with
+ * the jobs of a set (NULL: there is none): what they build before the ranks go. `work`: how many
+ * ranks, nodes, routers and links may still be built; this machine's are taken off, and what goes
+ * beyond is not built, and said to fit. False as world_run. */
+bool world_fits(const struct machine_spec *m, int nrank, const struct job_set *jobs, int64_t *work,
+                struct err *e);
 
 /* world_part: the ranks *first .. *end - 1 that this process runs: all, unless load->hosts. Only
  * process 0 then gets the whole result; the others' has the status and their own ranks' part. */

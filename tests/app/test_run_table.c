@@ -233,6 +233,39 @@ static void swept_settings_and_repetitions_have_values(void **state)
     assert_true(fabs(atof(cell(csv, 2, "measured_us")) - 2.5) < 1e-9);
 }
 
+/* What is not the same for all programs: only those with bodies have an n, only micro-benchmarks
+ * measure messages, alone and in one table. */
+static void programs_have_what_they_mean(void **state)
+{
+    enum { SCENE = 1, MESSAGE = 2, SWEPT = 4 };
+    static const unsigned plan[] = {SCENE, MESSAGE, SCENE | MESSAGE, SCENE | SWEPT,
+                                    SCENE | MESSAGE | SWEPT};
+    struct plan_swept swept[] = {{"kernel.message", false}};
+    struct err e;
+    struct run_spec bench = made_spec(arena, "t3e-300", 16, 4, 5);
+    (void)state;
+    text_copy(bench.kernel.name, sizeof bench.kernel.name, "pingpong");
+    bench.kernel.message_bytes = 4096;
+    made_identity(&bench, arena);
+    struct run_result r = made_result(arena, &bench);
+    r.nu = 0, r.measured_s = 2.5e-6;
+    assert_true(store_put(database, &bench, NULL, &r, &e));
+    for (size_t i = 0; i < sizeof plan / sizeof *plan; i++) {
+        struct run_spec some[2];
+        struct plan p = {.run = some, .nswept = plan[i] & SWEPT ? 1 : 0, .swept = swept};
+        if (plan[i] & SCENE) some[p.nrun++] = run[0];
+        if (plan[i] & MESSAGE) some[p.nrun++] = bench;
+        const char *csv = table(&p, NULL, false, true, &e);
+        for (int k = 0; k < p.nrun; k++) {
+            const bool scene = (plan[i] & SCENE) && k == 0;
+            assert_string_equal(cell(csv, k + 1, "n"), scene ? "16" : "");
+            const char *message = cell(csv, k + 1, "message");
+            if (!scene) assert_string_equal(message, "4 KiB");
+            else assert_true((message[0] != '\0') == ((plan[i] & SWEPT) != 0));
+        }
+    }
+}
+
 static void columns_are_taken_as_asked_or_refused(void **state)
 {
     static const struct {
@@ -365,6 +398,7 @@ int main(void)
         cmocka_unit_test(programs_get_every_column),
         cmocka_unit_test(swept_keys_have_short_names),
         cmocka_unit_test(swept_settings_and_repetitions_have_values),
+        cmocka_unit_test(programs_have_what_they_mean),
         cmocka_unit_test(columns_are_taken_as_asked_or_refused),
         cmocka_unit_test(outcomes_are_those_of_stored_runs),
         cmocka_unit_test(formulas_look_at_settings_and_results),

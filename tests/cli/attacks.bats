@@ -176,21 +176,20 @@ draw_all() {
     cp all.db bad.db
     draw_all 0
     pictures=$(find drawn -name '*.svg' | wc -l)
-    # gnuplot itself has no sanitizers: for them the texts with control characters and formats are enough, behind each other
-    texts='1 2 3 4 5'
-    if sanitized; then texts=45; fi
+    # Quotes and substitutions behind each other: each pair of quotes is whole within the other kind, so that a way out of
+    # either is taken. gnuplot itself has no sanitizers: for them control characters and formats are enough.
+    texts='quotes lines'
+    if sanitized; then texts=lines; fi
     for k in $texts; do
         {
         case $k in
-        1) printf '"; system("touch PWNED1"); set label 98 "<script>' ;;
-        2) printf "'; system('touch PWNED2'); set label 98 '; ! touch PWNED2" ;;
-        3) printf '`touch PWNED3` $(touch PWNED3) ${PWD} @figure @PWNED |touch PWNED3 < touch PWNED3 > PWNED3' ;;
-        esac
-        case $k in
-        4*) printf '\n system("touch PWNED4")\n! touch PWNED4\r\n"; system("touch PWNED4")\n\t\001\033[2J' ;;
-        esac
-        case $k in
-        *5) printf '{/Symbol %%s%%n%%d%%*d%%%%\\\\101\\" {}}{{@_^~&{\\\\\n# %% "" \x27\x27 \\' ;;
+        quotes)
+            printf '"; system("touch PWNED1"); set label 98 "<script>'
+            printf "'; system('touch PWNED2'); set label 98 '; ! touch PWNED2"
+            printf '`touch PWNED3` $(touch PWNED3) ${PWD} @figure @PWNED |touch PWNED3 < touch PWNED3 > PWNED3' ;;
+        lines)
+            printf '\n system("touch PWNED4")\n! touch PWNED4\r\n"; system("touch PWNED4")\n\t\001\033[2J'
+            printf '{/Symbol %%s%%n%%d%%*d%%%%\\\\101\\" {}}{{@_^~&{\\\\\n# %% "" \x27\x27 \\' ;;
         esac
         } >text
         add_to text "$shown"

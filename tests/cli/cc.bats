@@ -20,7 +20,7 @@ END
 blocks() { objdump -d "$1" | grep -c 'lea  *0x0(%r15),%r15'; }
 # entries FILE: how many entries its table has, of 28 bytes each.
 entries() {
-    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 32))
+    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 40))
 }
 
 @test "questions are answered by gcc" {
@@ -71,7 +71,7 @@ entries() {
     printf '\001' | dd of=note bs=1 seek=20 conv=notrunc status=none
     objcopy --update-section .note.mimdsim=note prog old
     fails_with 65 mimdsim mpirun -n 2 ./old
-    stderr_says "was made by another version of \`mimdsim cc\` (rules 1, here 3): compile it again"
+    stderr_says "was made by another version of \`mimdsim cc\` (rules 1, here 4): compile it again"
 }
 
 @test "an object of another compiler is refused by name" {

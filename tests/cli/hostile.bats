@@ -54,6 +54,21 @@ soon() {
     nothing_left_behind
 }
 
+@test "a pipe, a device or a socket is no database, whoever is asked to read or write it" {
+    mkfifo pipe.db
+    for file in pipe.db /dev/zero /dev/null; do
+        for verb in 'query $ select' 'report $' 'plot $ fig5' 'timeline $ 1' 'why $ 1' 'links $ 1' 'load t3e-300 --traffic $:1' \
+            'run speedup-t3e -o $' 'claims $'; do
+            # shellcheck disable=SC2086
+            run --separate-stderr -- soon "$MIMDSIM" ${verb//$/$file}
+            case $status in 65 | 73) ;; *) echo "$verb"; show; return 1 ;; esac
+            case $file in pipe.db) stderr_says 'pipe.db is a pipe; a database is a regular file' ;; *) stderr_says "$file is a device; a database is a regular file" ;; esac
+        done
+    done
+    rm pipe.db
+    nothing_left_behind
+}
+
 @test "a file that is larger than a text may be is refused before it is read" {
     truncate -s 600M large.json
     truncate -s 5G large.yaml

@@ -228,7 +228,7 @@ refused() {
     stderr_says "many.txt:1: '0-99999999999999999999': expected numbers of processors"
     scenario "$(two_on gray random)"
     fails_with 78 mimdsim run s.yaml -o none.db
-    stderr_says 'placement gray needs a hypercube'
+    stderr_says 'placement.kind gray needs a hypercube'
 }
 
 @test "combinations without jobs, and words that are none" {

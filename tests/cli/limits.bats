@@ -37,6 +37,18 @@ huge() {
     sanitized || sql_is x.db 'SELECT status, host_peak_bytes < 50000000 FROM run' 'failed|1'
 }
 
+@test "messages that many ranks cannot hold are refused before any is made, alone and beside another job" {
+    huge
+    for job in '' 'jobs: [{name: one}, {name: two, kernel: broadcast, ranks: 8}]'; do
+        printf '%s\n' "$job" >>huge.yaml
+        run --separate-stderr -- timeout 20 "$MIMDSIM" run huge.yaml -o "x$job.db" --machine t3e-300 --set kernel=broadcast \
+            --set kernel.message='1 GiB' --set ranks=128
+        [ "$status" -eq 78 ] || { show; return 1; }
+        stderr_says "what 128 ranks of 'broadcast' work in would take 275 GB of memory; this computer has"
+    done
+    sanitized || sql_is x.db 'SELECT status, host_peak_bytes < 50000000 FROM run' 'failed|1'
+}
+
 # deep: make and enter a folder whose path is longer than 2,000 characters.
 deep() {
     local name i

@@ -107,7 +107,7 @@ END
 66 # some.db has no link loads of run 99 # links some.db 99
 66 # no machine 't3e-30'; did you mean 't3e-300'? # validate t3e-30
 66 # none.db # claims none.db
-73 # folder is a folder, not a database # run speedup-t3e -o folder
+73 # folder is a folder; a database is a regular file # run speedup-t3e -o folder
 73 # nowhere/x.db # run speedup-t3e -o nowhere/x.db
 73 # plain.txt is not a folder # plot some.db fig6 --dir plain.txt
 74 # some.db is opened for reading only # query some.db 'DELETE FROM run'

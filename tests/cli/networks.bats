@@ -100,6 +100,11 @@ every_what_if() { (cd "$MIMDSIM_DATA/machines" && ls what-if-*.yaml) | sed 's/\.
     stdout_says "3 of 128 routers and 18 of 384 cables do not work"
 }
 
+@test "a mesh with more shortest ways than a number holds says so" {
+    works mimdsim machines t3e-300 --topology --set machine.topology.family=mesh --set machine.topology.dims='[600, 600]'
+    stdout_says 'more than 1.798e+308 shortest ways between two routers, 1 at least'
+}
+
 @test "check builds the networks of machines and scenarios, and names the line of what is not there" {
     printf '%s\n' 'schema_version: 1' 'base: t3e-300' 'network:' '  failed:' '    links: [[0, 9]]' >m.yaml
     fails_with 78 mimdsim check m.yaml
@@ -111,9 +116,35 @@ every_what_if() { (cd "$MIMDSIM_DATA/machines" && ls what-if-*.yaml) | sed 's/\.
     printf '%s\n' 'schema_version: 1' 'question: none?' 'kernel: barrier' 'ranks: 4' 'machine: t3e-300' \
         'sweep: {machine.network.failed.routers: ["[]", "[3]", "[128]"]}' >s.yaml
     fails_with 78 mimdsim check s.yaml
-    stderr_says "s.yaml: network.failed.routers: there is no router 128; expected 0 to 127"
+    stderr_says "s.yaml:6: network.failed.routers: there is no router 128; expected 0 to 127"
     sed -i 's/128/127/' s.yaml && sed -i 's/0, 9/0, 8/' m.yaml
     works mimdsim check s.yaml m.yaml
+}
+
+@test "every verb that reads a scenario refuses a machine that cannot be built, with the line of what is to blame" {
+    local verb what
+    for what in 'machine.placement: {kind: list, list: [0, 1, 1, 2]}|placement.list: ranks 1 and 2 on processor 1' \
+        'machine.network: {routing: nca}|network.routing '"'nca' is not for topology 'torus'" \
+        'machine.network: {level: packet, buffer: 1}|network.buffer is 1; level packet needs at least'; do
+        printf '%s\n' 'schema_version: 1' 'question: none?' 'kernel: pingpong' 'ranks: 4' 'machine: t3e-300' "${what%|*}" >s.yaml
+        for verb in check explain plan 'run -o s.db' why timeline accuracy stability 'compare pingpong'; do
+            # shellcheck disable=SC2086
+            fails_with 78 mimdsim $verb s.yaml
+            stderr_says "s.yaml:6: ${what#*|}"
+        done
+    done
+    [ ! -e s.db ]
+    # of a sweep the other points run, and this one is told beside them
+    printf '%s\n' 'schema_version: 1' 'question: none?' 'kernel: pingpong' 'ranks: 2' 'machine: t3e-300' \
+        'sweep: {machine.network.failed.links: ["[]", "[[0, 9]]"]}' >s.yaml
+    works mimdsim explain s.yaml
+    stderr_says 's.yaml:6: network.failed.links: entry 0, no further cable joins routers 0 and 9'
+    mimdsim plan s.yaml | grep -c refused | grep -qx 1
+    # jobs are asked about together
+    printf '%s\n' 'schema_version: 1' 'question: none?' 'machine: t3e-300' 'machine.network.failed.routers: [3]' 'jobs:' \
+        '  - {name: a, kernel: barrier, ranks: 2, placement: [4, 3]}' '  - {name: b, kernel: barrier, ranks: 2}' >s.yaml
+    fails_with 78 mimdsim explain s.yaml
+    stderr_says 'processor 3 of rank 1 hangs on router 3, which'
 }
 
 @test "ranks are placed beside failed routers, as long as there is room" {

@@ -122,6 +122,15 @@ cell() {
     [ "$(wc -l <figures/mine32.csv)" = 3 ]
     fails_with 64 mimdsim plot runs.db mine.sql --y mirco
     stderr_says "'mirco' is no column of the query; did you mean 'micro'?"
+    # one that has no end, and one of which a part can be drawn
+    many='WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x, x AS y FROM c'
+    echo "$many" >endless.sql
+    fails_with 64 mimdsim plot runs.db endless.sql
+    stderr_says 'more than 1000000 rows are too many for a figure'
+    echo "$many LIMIT 60000" >long.sql
+    fails_with 64 mimdsim plot runs.db long.sql
+    stderr_says '60000 rows are more than a figure can show'
+    works mimdsim plot runs.db long.sql --where 'x<9'
 }
 
 @test "what cannot be drawn is told, with the nearest name" {

@@ -120,3 +120,9 @@ makespan() {
     found=$(makespan out/timeline.goal -m loggp-example)
     [ "$expected" = "$found" ] || { echo "$expected us, again $found us"; return 1; }
 }
+
+@test "ranks that wait for each other are told with tag and line, and no size that the schedule does not have" {
+    printf '%s\n' 'num_ranks 2' 'rank 0 {' 'r: recv 8b from 1 tag 3' '}' 'rank 1 {' 'r: recv 8b from 0 tag 3' '}' >wait.goal
+    fails_with 70 mimdsim run wait.goal -m t3e-300 --quiet
+    stderr_says 'waits to receive a message, tag 3, from rank 1 (wait.goal:3)'
+}

@@ -217,8 +217,8 @@ documented() {
 
 @test "what does not suit a machine is a row with its reason, told three times at most, and the others run" {
     fails_with 1 mimdsim run speedup-t3e --set machine.placement.kind=gray,linear --only 'n <= 8 and level == link' -o g.db --quiet
-    [ "$(grep -c 'placement gray needs a hypercube' <<<"$stderr")" -eq 4 ]
-    stderr_says 'mimdsim: and 2 more: placement gray needs a hypercube'
+    [ "$(grep -c 'placement.kind gray needs a hypercube' <<<"$stderr")" -eq 4 ]
+    stderr_says 'mimdsim: and 2 more: --set: placement.kind gray needs a hypercube'
     stderr_says '5 of 10 runs failed'
     sql_is g.db "SELECT status, count(*) FROM run GROUP BY 1" $'failed|5\nok|5'
     fails_with 1 mimdsim run speedup-t3e --set machine.topology.family=fat-tree,torus --only 'n == 8' -o f.db --quiet --csv

@@ -10,43 +10,15 @@
 #include <string.h>
 
 #include "../support/made_run.h"
-#include "../support/scratch.h"
+#include "../support/store_fixture.h"
 #include "base/text.h"
 #include "report/compare.h"
 #include "report/plot_sheet.h"
 #include "spec/field.h"
 
-struct fixture {
-    char folder[200];
-    struct arena *a;
-    struct store *s;
-    struct err e;
-};
-
-static int begin(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    char path[300];
-    scratch_make(f->folder, sizeof f->folder);
-    f->a = arena_create();
-    f->s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
-    *state = f;
-    return f->s == NULL;
-}
-
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    store_close(f->s);
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
 /* Runs of which each differs from the first in one setting of its own, of programs or models: up to
  * `most` of them. Returns how many. */
-static int put_varied(struct fixture *f, int most)
+static int put_varied(struct store_fixture *f, int most)
 {
     int ntable, n = 0;
     const struct field_table *const *table = field_tables(&ntable);
@@ -74,7 +46,7 @@ static int put_varied(struct fixture *f, int most)
 /* No two of them are one point, however many settings vary. */
 static void any_number_of_settings_tells_points_apart(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct compare c;
     struct text ids = {0};
     const int n = put_varied(f, 70);
@@ -92,7 +64,7 @@ static void any_number_of_settings_tells_points_apart(void **state)
 /* A sheet has room for some; how many are left out, and one of them, is told. */
 static void settings_without_room_in_a_sheet_are_counted(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct plot_sheet t;
     static const char *const key[] = {"makespan",   "speedup",       "efficiency",
                                       "sent_bytes", "compute_share", "wait_share"};
@@ -114,8 +86,10 @@ static void settings_without_room_in_a_sheet_are_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(any_number_of_settings_tells_points_apart, begin, end),
-        cmocka_unit_test_setup_teardown(settings_without_room_in_a_sheet_are_counted, begin, end),
+        cmocka_unit_test_setup_teardown(any_number_of_settings_tells_points_apart, make_store,
+                                        drop_store),
+        cmocka_unit_test_setup_teardown(settings_without_room_in_a_sheet_are_counted, make_store,
+                                        drop_store),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -295,6 +295,9 @@ static void rows_of_one_place_are_a_mean_with_its_range(void **state)
     draw(&d, "n,rates,rate,time\n8,1,5,1\n8,2,6,4\n8,3,7,1\n", "n", NULL, "time", "");
     assert_string_equal(d.p.differ.s, "rates, rate");
     drop(&d);
+    draw(&d, "n,time, a,a,,b a\n8,1,1,1,1,1\n8,2,2,2,2,2\n", "n", NULL, "time", "");
+    assert_string_equal(d.p.differ.s, " a, a, , b a");
+    drop(&d);
 }
 
 /* Repetitions of one run: Student's interval. Of 1, 2, 3: mean 2, s = 1, t(2) = 4.303. */

@@ -9,36 +9,11 @@
 
 #include <cmocka.h>
 
-#include "../support/scratch.h"
+#include "../support/store_fixture.h"
 #include "report/report.h"
 
-struct fixture {
-    char folder[200];
-    struct store *s;
-    struct err e;
-};
-
-static int make_fixture(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    char path[256];
-    scratch_make(f->folder, sizeof f->folder);
-    f->s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
-    *state = f;
-    return f->s == NULL;
-}
-
-static int drop_fixture(void **state)
-{
-    struct fixture *f = *state;
-    store_close(f->s);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
 /* What report_query prints, to be freed. */
-static char *answer(struct fixture *f, const char *sql, bool json)
+static char *answer(struct store_fixture *f, const char *sql, bool json)
 {
     char *s = NULL;
     size_t size = 0;
@@ -49,7 +24,7 @@ static char *answer(struct fixture *f, const char *sql, bool json)
     return s;
 }
 
-static void expect(struct fixture *f, const char *sql, bool json, const char *text)
+static void expect(struct store_fixture *f, const char *sql, bool json, const char *text)
 {
     char *got = answer(f, sql, json);
     assert_string_equal(got, text);
@@ -93,7 +68,7 @@ static void json_keeps_kinds(void **state)
 
 static void wrong_sql_prints_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     for (int json = 0; json < 2; json++) {
         char *s = NULL;
         size_t size = 0;
@@ -109,7 +84,7 @@ static void wrong_sql_prints_nothing(void **state)
 
 static void an_output_that_cannot_be_written_is_an_error(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     FILE *out = fopen("/dev/full", "w");
     if (out == NULL) skip();
     assert_false(report_query(f->s, "SELECT 1 AS a", 0, NULL, false, out, &f->e));
@@ -117,7 +92,7 @@ static void an_output_that_cannot_be_written_is_an_error(void **state)
     fclose(out);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_fixture, drop_fixture)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_store, drop_store)
 
 int main(void)
 {

@@ -13,7 +13,7 @@
 
 #include "../support/made_run.h"
 #include "../support/refused.h"
-#include "../support/scratch.h"
+#include "../support/store_fixture.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "report/compare.h"
@@ -24,43 +24,15 @@
 #include "report/report.h"
 #include "report/stamp.h"
 
-struct fixture {
-    char folder[200];
-    struct arena *a;
-    struct store *s;
-    struct err e;
-};
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_store, drop_store)
 
-static int begin(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    char path[300];
-    scratch_make(f->folder, sizeof f->folder);
-    f->a = arena_create();
-    f->s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
-    *state = f;
-    return f->s == NULL;
-}
-
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    store_close(f->s);
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
-
-static void refused(struct fixture *f, enum err_kind kind, const char *part)
+static void refused(struct store_fixture *f, enum err_kind kind, const char *part)
 {
     is_refused(&f->e, kind, part);
 }
 
 /* A run of `seconds` on a machine with that latency of a hop; its number in the database. */
-static int64_t put(struct fixture *f, const char *machine, int n, int rep, double hop,
+static int64_t put(struct store_fixture *f, const char *machine, int n, int rep, double hop,
                    double seconds)
 {
     struct run_spec spec = made_spec(f->a, machine, n, 4, rep);
@@ -77,7 +49,7 @@ static bool near(double x, double wanted) { return fabs(x - wanted) <= 1e-9 * fa
 
 /* ---- documents and tables ---- */
 
-static char *answer(struct fixture *f, const char *sql)
+static char *answer(struct store_fixture *f, const char *sql)
 {
     char *s = NULL;
     size_t size = 0;
@@ -97,7 +69,7 @@ static int count(const char *s, const char *part)
 /* No two keys of an object are equal, whatever columns are called. */
 static void columns_of_one_name_are_keys_of_their_own(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     static const struct {
         const char *sql, *keys[4];
     } row[] = {
@@ -128,7 +100,7 @@ static void keep_id(void *context, int64_t id) { text_add(context, "%lld ", (lon
 /* All digits of a number, one record a row, and whose rows these are. */
 static void rows_become_records(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     static const struct {
         const char *sql, *csv, *ids;
     } row[] = {
@@ -173,7 +145,7 @@ static void rows_become_records(void **state)
 
 static void a_query_is_a_sheet(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct plot_sheet t;
     assert_true(
         plot_sheet_query(&t, f->s,
@@ -228,7 +200,7 @@ static void a_query_is_a_sheet(void **state)
 
 static void runs_are_a_sheet_of_what_was_asked_for(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct plot_sheet t;
     static const char *const key[] = {"makespan", "hop_latency", "machine.network.hop_latency",
                                       "ranks",    "machine",     "level"};
@@ -264,7 +236,7 @@ static void runs_are_a_sheet_of_what_was_asked_for(void **state)
 
 /* ---- sides ---- */
 
-static bool make(struct fixture *f, struct compare *c, const char *first, const char *second)
+static bool make(struct store_fixture *f, struct compare *c, const char *first, const char *second)
 {
     const struct compare_side side[] = {{.name = "one", .store = f->s, .run_ids = first},
                                         {.name = "two", .store = f->s, .run_ids = second}};
@@ -273,7 +245,7 @@ static bool make(struct fixture *f, struct compare *c, const char *first, const 
 
 static void sides_meet_in_their_points(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct compare c;
     double error;
     /* runs 1 to 5, then 6 to 8 */
@@ -316,7 +288,7 @@ static void sides_meet_in_their_points(void **state)
 
 static void sides_that_do_not_meet_are_told(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct compare c;
     put(f, "t3e-300", 8, 0, 1e-7, 1e-3);
     put(f, "t3e-300", 16, 0, 1e-7, 1e-3);
@@ -342,7 +314,7 @@ static void sides_that_do_not_meet_are_told(void **state)
  * the point. */
 static void machines_are_what_is_compared(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct compare c;
     for (int i = 0; i < 2; i++) put(f, "t3e-300", 8 << i, 0, 1e-7, 1e-3);
     for (int i = 0; i < 2; i++) put(f, "t3e-300", 8 << i, 0, 2e-7, 2e-3);
@@ -409,7 +381,7 @@ static void what_is_known_is_joined_in_any_order(void **state)
 
 static void errors_of_stored_runs_are_read(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct how_sure h;
     assert_true(how_sure_read(f->s, NULL, &h, &f->e));
     assert_int_equal(h.runs, 0);
@@ -426,7 +398,7 @@ static void errors_of_stored_runs_are_read(void **state)
     assert_int_not_equal(f->e.kind, ERR_NONE);
 }
 
-static const char *rows_of(struct fixture *f, const char *ids)
+static const char *rows_of(struct store_fixture *f, const char *ids)
 {
     struct text t = {0};
     if (!figure_rows(f->s, ids, &t, &f->e)) fail_msg("%s", f->e.text);
@@ -438,7 +410,7 @@ static const char *rows_of(struct fixture *f, const char *ids)
 /* No figure chooses among machines in silence. */
 static void what_a_figure_leaves_out_is_told(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     put(f, "t3e-300", 8, 0, 1e-7, 1e-3);
     put(f, "t3e-300", 16, 0, 1e-7, 1e-3);
     const char *both = rows_of(f, "[1,2]");
@@ -459,7 +431,7 @@ static void what_a_figure_leaves_out_is_told(void **state)
     assert_string_equal(rows_of(f, "[]"), "");
 }
 
-static const char *stamp_of(struct fixture *f, const char *ids)
+static const char *stamp_of(struct store_fixture *f, const char *ids)
 {
     struct text t = {0};
     if (!stamp_make(f->s, ids, &t, &f->e)) fail_msg("%s", f->e.text);
@@ -470,7 +442,7 @@ static const char *stamp_of(struct fixture *f, const char *ids)
 
 static void a_stamp_names_whose_numbers_these_are(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     assert_string_equal(stamp_of(f, NULL), "");
     put(f, "t3e-300", 8, 0, 1e-7, 1e-3);
     put(f, "t3e-300", 16, 0, 1e-7, 1e-3);

@@ -166,6 +166,36 @@ static void every_guard_ends_who_touches_it(void **state)
     munmap(base, N * stride);
 }
 
+/* The next fibers find nothing of those before, but for pages that are touched already. */
+static void a_pool_is_used_again(void **state)
+{
+    (void)state;
+    static const int n[] = {9, 4, 9, 1};
+    struct err e;
+    err_clear(&e);
+    struct fiber_pool *p = fiber_pool_create(9, 64 * 1024, &e);
+    assert_non_null(p);
+    for (int k = 0; k < 4; k++) {
+        struct counter c[9] = {0};
+        if (k > 0) assert_true(fiber_pool_again(p, n[k], 64 * 1024 - 1));
+        assert_int_equal(fiber_pool_switches(p), 0);
+        for (int i = 0; i < n[k]; i++) {
+            c[i] = (struct counter){.id = 10 * k + i, .rounds = 3};
+            c[i].fiber = fiber_start(p, i, count_rounds, &c[i]);
+        }
+        for (int round = 0; round < 4; round++)
+            for (int i = 0; i < n[k]; i++) assert_int_equal(fiber_enter(c[i].fiber), round < 3);
+        for (int i = 0; i < 9; i++) assert_int_equal(c[i].seen, i < n[k] ? 3 : 0);
+        assert_int_equal(fiber_pool_switches(p), 4 * n[k]);
+        assert_true(peak_of(p) > 0);
+        /* those that are not in use have no guard of their own for now */
+        assert_int_equal(fiber_below(p, (char *)c), -1);
+    }
+    assert_false(fiber_pool_again(p, 10, 64 * 1024));
+    assert_false(fiber_pool_again(p, 4, 128 * 1024));
+    fiber_pool_destroy(p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +204,7 @@ int main(void)
         cmocka_unit_test(every_guard_ends_who_touches_it),
         cmocka_unit_test(an_overflow_of_one_of_very_many_is_seen),
         cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
+        cmocka_unit_test(a_pool_is_used_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,6 +18,7 @@
 #include "../support/scratch.h"
 #include "store/image.h"
 #include "store/store.h"
+#include "store/temporary.h"
 
 struct fixture {
     char folder[200], path[256];
@@ -70,7 +71,7 @@ static bool take_number(void *context, int ncolumn, const char *const *name,
 static long number(struct fixture *f, struct store *s, const char *sql)
 {
     long n = -1;
-    assert_true(store_select(s, sql, 0, NULL, take_number, &n, &f->e));
+    if (!store_select(s, sql, 0, NULL, take_number, &n, &f->e)) fail_msg("%s: %s", sql, f->e.text);
     return n;
 }
 
@@ -159,8 +160,14 @@ static void all_tables_are_there_for_who_asks(void **state)
         /* before the file is made, and after */
         if (late) assert_true(store_publish(s, &f->e));
         assert_int_equal(number(f, s, objects), shown);
+        /* with functions that are tables, and temporary ones, before and behind it */
+        const char *listed = "SELECT count(*) FROM run r, json_each('[1, 2]') WHERE r.id = value";
+        assert_int_equal(number(f, s, listed), 1);
+        assert_true(store_temporary(s, "kept", "a INTEGER", &f->e));
         assert_int_equal(number(f, s, "SELECT count(*) FROM v_stage"), 7);
         assert_int_equal(number(f, s, objects), all);
+        assert_int_equal(number(f, s, listed), 1);
+        assert_int_equal(number(f, s, "SELECT count(*) FROM temp.kept"), 0);
         assert_int_equal(number(f, s, whole), 1);
         /* it goes on as before */
         put(f, s, 1);

@@ -248,6 +248,71 @@ static void rows_are_inserted_and_deleted_by_any_kind(void **state)
     store_close(s);
 }
 
+/* What asks within its own rows. */
+struct asking {
+    struct store *s;
+    const char *sql;
+    int depth;
+    struct text seen;
+    struct err *e;
+};
+
+static bool ask_again(void *context, int n, const char *const *name, const char *const *value)
+{
+    struct asking *a = context;
+    assert_int_equal(n, 1);
+    assert_non_null(name[0]);
+    text_add(&a->seen, "%s ", value[0]);
+    return a->depth-- <= 0 || store_select(a->s, a->sql, 0, NULL, ask_again, a, a->e);
+}
+
+/* A passing database keeps the statements of its queries; no answer shows it. */
+static void the_same_is_asked_again_of_a_passing_database(void **state)
+{
+    struct fixture *f = *state;
+    struct store *s = store_open("passing", STORE_MEMORY, &f->e);
+    const char *one[] = {"one"}, *key[] = {"key", "value"};
+    const char *const sql = "SELECT ?1 UNION ALL SELECT 'two'";
+    assert_non_null(s);
+    /* neither a parameter nor the place of a reader who stopped stays */
+    for (int k = 0; k < 3; k++) {
+        struct seen x = {.most = k};
+        assert_true(store_query(s, sql, 1, one, take_header, take_values, &x, &f->e));
+        assert_non_null(strstr(x.text.s, k == 1 ? "tone " : "tone ttwo "));
+        text_free(&x.text);
+    }
+    /* one that is in use is given to nobody else */
+    struct asking a = {.s = s, .sql = "VALUES (1), (2), (3)", .depth = 1, .e = &f->e};
+    assert_true(store_select(s, a.sql, 0, NULL, ask_again, &a, &f->e));
+    assert_string_equal(a.seen.s, "1 1 2 3 2 3 ");
+    text_free(&a.seen);
+    /* a row that is refused is not in the way of the next; a value that is left out is not the
+     * last one's */
+    const struct store_value row[2][2] = {{store_text("a"), store_text("x")},
+                                          {store_text("b"), store_null()}},
+                             refused[2] = {store_null(), store_text("y")};
+    assert_true(store_insert(s, "meta", 2, key, row[0], &f->e));
+    assert_false(store_insert(s, "meta", 2, key, refused, &f->e));
+    err_clear(&f->e);
+    assert_true(store_insert(s, "meta", 2, key, row[1], &f->e));
+    struct seen x = {0};
+    assert_true(ask(s, 0, "SELECT value FROM meta WHERE key IN ('a', 'b') ORDER BY key", 0, NULL,
+                    &x, &f->e));
+    assert_string_equal(x.text.s, "x null ");
+    text_free(&x.text);
+    /* more texts than are kept, twice */
+    for (int k = 0; k < 200; k++) {
+        char text[32], wanted[16];
+        struct seen number = {0};
+        snprintf(text, sizeof text, "SELECT %d", k % 100);
+        snprintf(wanted, sizeof wanted, "%d ", k % 100);
+        assert_true(ask(s, 0, text, 0, NULL, &number, &f->e));
+        assert_string_equal(number.text.s, wanted);
+        text_free(&number.text);
+    }
+    store_close(s);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
 
 int main(void)
@@ -258,6 +323,7 @@ int main(void)
         TEST(a_query_has_a_most_of_columns),
         TEST(a_reader_may_stop),
         TEST(rows_are_inserted_and_deleted_by_any_kind),
+        TEST(the_same_is_asked_again_of_a_passing_database),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

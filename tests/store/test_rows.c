@@ -329,12 +329,12 @@ static void a_file_takes_its_place_once(void **state)
 {
     struct fixture *f = *state;
     struct published first = {.file = -1}, second = {.file = -1};
-    if (!publish_place(f->path, NULL, 0, &first, &f->e)) fail_msg("%s", f->e.text);
+    if (!publish_place(f->path, NULL, 0, false, &first, &f->e)) fail_msg("%s", f->e.text);
     assert_false(first.late);
     struct stat info, again;
     assert_int_equal(stat(f->path, &info), 0);
     assert_int_equal(access(first.name, F_OK), 0);
-    if (!publish_place(f->path, NULL, 0, &second, &f->e)) fail_msg("%s", f->e.text);
+    if (!publish_place(f->path, NULL, 0, false, &second, &f->e)) fail_msg("%s", f->e.text);
     assert_true(second.late);
     assert_string_not_equal(first.name, second.name);
     assert_int_equal(stat(f->path, &again), 0);
@@ -349,7 +349,7 @@ static void a_file_takes_its_place_once(void **state)
     assert_int_equal(access(f->path, F_OK), 0);
     /* in a folder that is not there, none */
     struct published none = {.file = -1};
-    assert_false(publish_place("/no-such-folder-at-all/x.db", NULL, 0, &none, &f->e));
+    assert_false(publish_place("/no-such-folder-at-all/x.db", NULL, 0, false, &none, &f->e));
     assert_int_equal(f->e.kind, ERR_CREATE);
     publish_drop(&none);
 }
@@ -374,7 +374,7 @@ static void logs_without_their_database_are_removed(void **state)
             fclose(fopen(name, "w"));
         }
         struct published b = {.file = -1};
-        if (!publish_place(f->path, NULL, 0, &b, &f->e)) fail_msg("%s", f->e.text);
+        if (!publish_place(f->path, NULL, 0, false, &b, &f->e)) fail_msg("%s", f->e.text);
         publish_drop(&b);
         for (int i = 0; i < 4; i++) assert_int_equal(is_there(f->path, suffix[i]), there || i == 3);
     }

@@ -17,37 +17,9 @@
 #include "base/digest.h"
 #include "base/text.h"
 #include "../support/made_run.h"
-#include "../support/scratch.h"
+#include "../support/store_fixture.h"
 #include "store/build.h"
 #include "store/store.h"
-
-struct fixture {
-    char folder[200], path[256];
-    struct arena *a;
-    struct store *s;
-    struct err e;
-};
-
-static int open_fixture(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    f->a = arena_create();
-    f->s = store_open(f->path, STORE_WRITE, &f->e);
-    *state = f;
-    return f->s == NULL;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *f = *state;
-    store_close(f->s);
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
 
 static bool take_cell(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -58,7 +30,7 @@ static bool take_cell(void *context, int ncolumn, const char *const *name, const
 }
 
 /* The first cell of a query's first row. */
-static const char *cell(struct fixture *f, const char *sql)
+static const char *cell(struct store_fixture *f, const char *sql)
 {
     char *buffer = arena_take(f->a, 8192);
     strcpy(buffer, "no row");
@@ -68,16 +40,19 @@ static const char *cell(struct fixture *f, const char *sql)
 
 #define assert_close(x, y, tolerance) assert_true(fabs((x) - (y)) <= (tolerance))
 
-static double number(struct fixture *f, const char *sql) { return strtod(cell(f, sql), NULL); }
+static double number(struct store_fixture *f, const char *sql)
+{
+    return strtod(cell(f, sql), NULL);
+}
 
-static void put(struct fixture *f, const struct run_spec *spec, const struct run_result *r)
+static void put(struct store_fixture *f, const struct run_spec *spec, const struct run_result *r)
 {
     if (!store_put(f->s, spec, NULL, r, &f->e)) fail_msg("%s", f->e.text);
 }
 
 static void a_run_comes_back_as_it_was_put(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 128, 128, 3);
     struct run_result r = made_result(f->a, &spec);
     r.status = RUN_INVALID;
@@ -124,7 +99,7 @@ static void a_run_comes_back_as_it_was_put(void **state)
 
 static void provenance_names_this_build(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     put(f, &spec, &r);
@@ -137,7 +112,7 @@ static void provenance_names_this_build(void **state)
 
 static void putting_a_run_again_replaces_it(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     static const char *const table[] = {"run",      "run_setting", "stage", "rank_stage",
                                         "baseline", "error_check", "span"};
     struct run_spec spec = made_spec(f->a, "t3e-300", 8, 8, 0),
@@ -166,7 +141,7 @@ static void putting_a_run_again_replaces_it(void **state)
 
 static void only_a_good_run_need_not_run_again(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0),
                     next = made_spec(f->a, "t3e-300", 4, 4, 1);
     struct run_result r = made_result(f->a, &spec);
@@ -191,7 +166,7 @@ static void only_a_good_run_need_not_run_again(void **state)
 
 static void a_sweep_can_be_pivoted_by_what_it_varies(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     for (int p = 2; p <= 8; p *= 2) {
         struct run_spec spec = made_spec(f->a, "t3e-300", p, p, 0);
         spec.machine.network.link_bandwidth = p < 8 ? 480e6 : 960e6;
@@ -213,7 +188,7 @@ static void a_sweep_can_be_pivoted_by_what_it_varies(void **state)
 
 static void speedup_efficiency_and_fraction_are_those_of_amdahl(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 16, 16, 0);
     struct run_result r = made_result(f->a, &spec);
     /* S = 10 on 16: f = (1 - 1/10) / (1 - 1/16) = 0.96 */
@@ -235,7 +210,7 @@ static void speedup_efficiency_and_fraction_are_those_of_amdahl(void **state)
 
 static void stages_hold_sums_and_extremes_of_all_ranks(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 1000, 1000, 0);
     struct run_result r = made_result(f->a, &spec);
     put(f, &spec, &r);
@@ -264,7 +239,7 @@ static void stages_hold_sums_and_extremes_of_all_ranks(void **state)
 
 static void accounting_is_exact_and_a_lost_picosecond_is_seen(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 600, 600, 0);
     struct run_result r = made_result(f->a, &spec);
     put(f, &spec, &r);
@@ -283,7 +258,7 @@ static void accounting_is_exact_and_a_lost_picosecond_is_seen(void **state)
 
 static void numbers_that_are_not_finite_are_null_and_fail(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     r.error[0].relative = NAN;
@@ -297,7 +272,7 @@ static void numbers_that_are_not_finite_are_null_and_fail(void **state)
 
 static void a_sum_beyond_64_bits_is_null_not_wrong(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     for (int k = 0; k < 4; k++) r.stage[k * 7].wait_ps = INT64_MAX / 3;
@@ -308,7 +283,7 @@ static void a_sum_beyond_64_bits_is_null_not_wrong(void **state)
 
 static void links_and_spans_are_kept_within_their_limits(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     r.nlink = 20000;
@@ -342,7 +317,7 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
 
 static void every_view_answers_on_an_empty_database(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     static const char *const view[] = {"v_speedup",    "v_stage",    "v_accounting", "v_errors",
                                        "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
                                        "v_provenance", "v_link_top", "v_repetition",
@@ -368,7 +343,7 @@ static void every_view_answers_on_an_empty_database(void **state)
 
 static void generic_rows_replace_their_like_and_obey_the_schema(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     static const char *const name[] = {"suite", "subject",   "quantity", "at",
                                        "unit",  "reference", "value",    "relative_error",
                                        "class", "verdict",   "source"};
@@ -393,7 +368,7 @@ static void generic_rows_replace_their_like_and_obey_the_schema(void **state)
 
 static void a_transaction_is_kept_or_forgotten_as_a_whole(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     assert_true(store_begin(f->s, &f->e));
@@ -408,7 +383,7 @@ static void a_transaction_is_kept_or_forgotten_as_a_whole(void **state)
 
 static void a_run_that_fails_half_way_leaves_no_row(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0),
                     next = made_spec(f->a, "t3e-300", 4, 4, 1);
     struct run_result r = made_result(f->a, &spec);
@@ -433,7 +408,7 @@ static void a_run_that_fails_half_way_leaves_no_row(void **state)
 
 static void commits_go_to_the_log_without_waiting_for_the_disk(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     assert_string_equal(cell(f, "PRAGMA journal_mode"), "wal");
     assert_string_equal(cell(f, "PRAGMA synchronous"), "1");
     assert_string_equal(cell(f, "PRAGMA foreign_keys"), "1");
@@ -455,7 +430,7 @@ static bool count_kinds(void *context, int ncolumn, const char *const *name,
 
 static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     struct store *passing = store_open("nowhere/at-all", STORE_MEMORY, &f->e);
     assert_non_null(passing);
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
@@ -470,13 +445,22 @@ static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **stat
         passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)", 0,
         NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "0");
+    /* the next set of runs begins with none, also for a query that was asked before */
+    for (int k = 0; k < 2; k++) {
+        assert_true(store_clear(passing, &f->e));
+        assert_false(store_has(passing, &spec));
+        assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell,
+                                 answer, &f->e));
+        assert_string_equal(answer, "0");
+        assert_true(store_put(passing, &spec, NULL, &r, &f->e));
+    }
     store_close(passing);
     assert_int_equal(access("nowhere", F_OK), -1);
 }
 
 static void queries_keep_the_kinds_of_values_and_bind_parameters(void **state)
 {
-    struct fixture *f = *state;
+    struct store_fixture *f = *state;
     int seen[5] = {0};
     const char *param[] = {"x'; DROP TABLE run; --"};
     assert_true(store_query(
@@ -495,7 +479,7 @@ static void queries_keep_the_kinds_of_values_and_bind_parameters(void **state)
     assert_int_equal(f->e.kind, ERR_DATA);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, open_fixture, close_fixture)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_store, drop_store)
 
 int main(void)
 {

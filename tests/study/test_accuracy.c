@@ -128,6 +128,21 @@ static void ladders_show_the_errors_that_theory_knows(void **state)
     assert_true(error_of(&r, "network", "auto", "auto") ==
                 error_of(&r, "network", "packet", "packet"));
     assert_int_equal(r.nchoice, 3);
+    /* in two parts, of which the second may be made elsewhere: the same rungs in the same order */
+    struct accuracy_report parts, programs;
+    assert_true(accuracy_network(&spec, 1, a, &parts, &e));
+    assert_true(accuracy_programs(&spec, 1, a, &programs, &e));
+    assert_int_equal(parts.nchoice + programs.nchoice, 0);
+    accuracy_append(&parts, programs.rung, programs.nrung);
+    accuracy_decide(&parts, 0);
+    assert_int_equal(parts.nrung, r.nrung);
+    for (int i = 0; i < r.nrung; i++) {
+        assert_string_equal(parts.rung[i].rung, r.rung[i].rung);
+        assert_memory_equal(&parts.rung[i].error, &r.rung[i].error, sizeof r.rung[i].error);
+    }
+    assert_int_equal(parts.nchoice, 3);
+    for (int k = 1; k < 3; k++)
+        assert_int_equal(parts.choice[k].rung - parts.rung, r.choice[k].rung - r.rung);
     arena_destroy(a);
 }
 

@@ -120,6 +120,17 @@ static void the_suite_is_the_same_on_several_processes(void **state)
     assert_int_equal(r[0].nrow, r[1].nrow);
     assert_true(r[0].nrow > 50);
     assert_memory_equal(r[0].row, r[1].row, (size_t)r[0].nrow * sizeof *r[0].row);
+    /* and scene by scene */
+    struct stability_report all = {.arena = a};
+    for (int i = 0; i < stability_suite_size(); i++) {
+        const struct stability_options one = {
+            .most_bodies = 7, .workers = 1, .first = i, .scenes = 1, .quiet = true};
+        assert_true(stability_measure(NULL, 0, &one, a, &r[1], &e));
+        if (stability_suite_bodies(i) > 7) assert_int_equal(r[1].nrow, 0);
+        stability_append(&all, r[1].row, r[1].nrow);
+    }
+    assert_int_equal(all.nrow, r[0].nrow);
+    assert_memory_equal(all.row, r[0].row, (size_t)r[0].nrow * sizeof *r[0].row);
     arena_destroy(a);
 }
 
