@@ -5,7 +5,8 @@
 #include "machine/topology.h"
 #include "plan/machine_file.h"
 
-enum { FAMILIES = TOPOLOGY_GRAPH + 1, MOST_LINKS = 512, MOST_HOPS = 4096, PAIRS = 64 };
+enum { FAMILIES = TOPOLOGY_GRAPH + 1, MOST_LINKS = 512, MOST_HOPS = 4096, PAIRS = 64,
+       SEEN = 1 << 18 }; /* routers looked at for all pairs: of a graph each route looks at all */
 
 /* Mostly small, now and then anything. */
 static int a_size(struct fuzz_bytes *b)
@@ -45,6 +46,27 @@ static void take_failures(struct topology_spec *t, struct fuzz_bytes *b, struct 
     for (int i = 0; i < t->nfailed_router; i++) t->failed_router[i] = (int)(int8_t)fuzz_take(b, 1);
 }
 
+/* A list of n sizes, or of shifts, which may be negative. */
+static int *take_list(struct fuzz_bytes *b, int n, bool shifts, struct arena *a)
+{
+    int *list = TAKE(a, n + 1, int);
+    for (int i = 0; i < n; i++) list[i] = shifts ? (int)(int8_t)fuzz_take(b, 1) : a_size(b);
+    return list;
+}
+
+/* What the families after the dragonfly have beside their dimensions. */
+static void take_further(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
+{
+    t->express = a_size(b);
+    t->seed = fuzz_take(b, 1);
+    t->nup = (int)fuzz_below(b, MACHINE_MAX_DIMS);
+    t->up = take_list(b, t->nup, false, a);
+    t->ntwist = (int)fuzz_below(b, MACHINE_MAX_DIMS);
+    t->twist = take_list(b, t->ntwist, true, a);
+    t->nbundle = (int)fuzz_below(b, MACHINE_MAX_DIMS);
+    t->bundle = take_list(b, t->nbundle, false, a);
+}
+
 static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
 {
     *t = (struct topology_spec){.family = (enum topology_family)fuzz_below(b, FAMILIES)};
@@ -57,6 +79,7 @@ static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct 
     t->routing = (enum dragonfly_routing)fuzz_below(b, 2);
     t->xpress = fuzz_below(b, 4) == 0;
     if (topology_has(t->family, TOPOLOGY_LISTED)) take_links(t, b, a);
+    else if (t->family > TOPOLOGY_DRAGONFLY) take_further(t, b, a);
     take_failures(t, b, a);
 }
 
@@ -64,7 +87,8 @@ static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct 
 static void walk(const struct topology *t, struct fuzz_bytes *b)
 {
     static struct hop route[MOST_HOPS];
-    for (int k = 0; t->max_hops <= MOST_HOPS && k < PAIRS; k++) {
+    const int most = t->nrouter > SEEN / PAIRS ? 1 + SEEN / t->nrouter : PAIRS;
+    for (int k = 0; t->max_hops <= MOST_HOPS && k < most; k++) {
         int src = (int)(fuzz_take(b, 3) % (unsigned)t->nnode),
             dst = (int)(fuzz_take(b, 3) % (unsigned)t->nnode);
         uint64_t choice = fuzz_take(b, 2);
@@ -112,6 +136,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     take_topology(&m.topology, &b, a);
     const struct topology *t = NULL;
     if (machine_file_check(&m, "input.yaml", 1, &e)) t = topology_create(&m.topology, a, &e);
+    /* A graph by chance is made cable by cable: the documentation states how long that takes. */
+    if (t != NULL && topology_has(m.topology.family, TOPOLOGY_SEEDED))
+        fuzz_allow(FUZZ_SECONDS + 0.4e-6 * t->nlink);
     if (t != NULL) walk(t, &b);
     else fuzz_refused(&e);
     arena_destroy(a);

@@ -4,6 +4,7 @@
 #include "fuzz.h"
 
 #include "plan/plan.h"
+#include "run/run.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -18,6 +19,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (plan_machine(&m, path, NULL, a, &origin, &norigin, &e)) {
         CHECK(machine_spec_processors(&m) >= 1 && norigin > 0);
         for (int i = 0; i < norigin; i++) CHECK(origin[i].key[0] != '\0' && origin[i].file != NULL);
+        /* Its network is built, too. */
+        const struct plan_options o = {.fits = run_fits};
+        if (!plan_check_file(path, &o, &e)) fuzz_refused(&e);
     } else fuzz_refused(&e);
     arena_destroy(a);
     return 0;

@@ -12,10 +12,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct err e;
     struct plan p;
+    const struct plan_options o = {.fits = run_fits};
     fuzz_data();
     err_clear(&e);
     const char *path = fuzz_file("input.yaml", data, size);
-    if (plan_read(&p, path, NULL, &e)) {
+    if (plan_read(&p, path, &o, &e)) {
         CHECK(p.nrun > 0);
         fuzz_allow(FUZZ_SECONDS + 30e-6 * p.nrun);
         for (int i = 0; i < p.nrun; i++) {

@@ -2,6 +2,7 @@
 #include "fuzz.h"
 
 #include "plan/plan.h"
+#include "run/run.h"
 
 enum { MOST = 8 };
 
@@ -12,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char *path;
     const char *set[MOST];
-    struct plan_options o = {.set = set};
+    struct plan_options o = {.set = set, .fits = run_fits};
     struct err e;
     struct plan p;
     fuzz_data();
