@@ -24,7 +24,8 @@ calibrated() {
     # The code of programs in one file, and the collectives; each with what it was fitted to.
     if command -v gcc >/dev/null; then
         for key in issue div root chain step load whole; do grep -q "^    $key: {value: .* cycles, .*fit to .* loops, residual" my.yaml; done
-        [ "$(grep -c '^#   calibrate-code, loop = ' my.yaml)" -eq 16 ]
+        works mimdsim plan calibrate-code --format lines
+        [ "$(grep -c '^#   calibrate-code, loop = ' my.yaml)" -eq $((${#lines[@]} - 1)) ] # a heading
     fi
     grep -q 'collectives by algorithm and size on 2 processors; predicted from the segments with a residual of' my.yaml
     [ "$(grep -c '^#   allreduce ' my.yaml)" -ge 1 ]
