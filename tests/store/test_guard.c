@@ -16,22 +16,12 @@
 #include <sqlite3.h>
 
 #include "../support/made_run.h"
-#include "../support/scratch.h"
-#include "base/arena.h"
+#include "../support/folder_fixture.h"
 #include "store/store.h"
-
-struct fixture {
-    char folder[128], path[256];
-    struct arena *a;
-    struct err e;
-};
 
 static int make_fixture(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    f->a = arena_create();
+    struct folder_fixture *f = folder_of(sizeof *f, "t.db");
     struct store *s = store_open(f->path, STORE_WRITE, &f->e);
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
@@ -41,17 +31,8 @@ static int make_fixture(void **state)
     return 0;
 }
 
-static int drop_fixture(void **state)
-{
-    struct fixture *f = *state;
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
 /* What somebody else does to the file, without any of our rules. */
-static void do_to(struct fixture *f, const char *sql)
+static void do_to(struct folder_fixture *f, const char *sql)
 {
     sqlite3 *db;
     char *why = NULL;
@@ -63,7 +44,7 @@ static void do_to(struct fixture *f, const char *sql)
 }
 
 /* Both ways of opening refuse it with a text that says `what`. */
-static void refused(struct fixture *f, const char *sql, bool reader_only, const char *what)
+static void refused(struct folder_fixture *f, const char *sql, bool reader_only, const char *what)
 {
     do_to(f, sql);
     for (int mode = 0; mode < (reader_only ? 1 : 2); mode++) {
@@ -104,7 +85,7 @@ static void a_trigger_is_refused(void **state)
 /* Only blanks and comments may differ: what a later version of this program says of a column. */
 static void comments_and_blanks_of_a_schema_are_free(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     do_to(f,
           "UPDATE sqlite_schema SET sql = replace(sql, '-- ', '--  say: ') WHERE sql LIKE '%-- %'");
     struct store *s = store_open(f->path, STORE_READ, &f->e);
@@ -114,7 +95,7 @@ static void comments_and_blanks_of_a_schema_are_free(void **state)
 
 static void a_users_own_tables_indices_and_views_are_let_be(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     do_to(f, "CREATE TABLE mine (x); CREATE VIEW my_runs AS SELECT n FROM run; CREATE INDEX own ON "
              "run (n)");
     for (int mode = 0; mode < 2; mode++) {
@@ -126,7 +107,7 @@ static void a_users_own_tables_indices_and_views_are_let_be(void **state)
 
 static void rows_that_break_their_rules_are_refused_by_table_and_column(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     refused(f, "UPDATE run SET status = 'gone'", true, "CHECK constraint failed in run");
     do_to(f, "UPDATE run SET status = 'ok'");
     /* the column may be NULL for one statement */
@@ -156,7 +137,7 @@ static void asked(struct store *s, const char *sql, const char *answer)
 
 static void sums_go_on_beyond_64_bits(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = store_open(f->path, STORE_READ, &f->e);
     asked(s,
           "WITH t(x) AS (VALUES (9223372036854775807), (9223372036854775807), (1)) SELECT sum(x) "
@@ -186,7 +167,7 @@ static void sums_go_on_beyond_64_bits(void **state)
 /* Somebody writes again and again, and holds the lock in between: who waits does not give up. */
 static void a_lock_is_waited_for_as_long_as_its_holders_write(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     pid_t child = fork();
     if (child == 0) {
         sqlite3 *db;
@@ -212,7 +193,7 @@ static void a_lock_is_waited_for_as_long_as_its_holders_write(void **state)
 
 static void a_lock_whose_holder_does_nothing_is_given_up(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     sqlite3 *db;
     assert_int_equal(sqlite3_open(f->path, &db), SQLITE_OK);
     assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
@@ -225,7 +206,7 @@ static void a_lock_whose_holder_does_nothing_is_given_up(void **state)
 
 int main(void)
 {
-#define TEST(f) cmocka_unit_test_setup_teardown(f, make_fixture, drop_fixture)
+#define TEST(f) cmocka_unit_test_setup_teardown(f, make_fixture, drop_folder)
     const struct CMUnitTest tests[] = {
         TEST(a_view_of_ours_that_says_something_else_is_refused),
         TEST(a_view_in_the_place_of_a_table_is_refused),

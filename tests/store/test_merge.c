@@ -14,39 +14,13 @@
 #include <sqlite3.h>
 
 #include "../support/made_run.h"
-#include "../support/scratch.h"
+#include "../support/folder_fixture.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "store/merge.h"
 #include "store/real_rows.h"
 
-struct fixture {
-    char folder[200], path[256], other[256];
-    struct arena *a;
-    struct err e;
-};
-
-static int begin(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "main.db");
-    scratch_path(f->other, sizeof f->other, f->folder, "other.db");
-    f->a = arena_create();
-    *state = f;
-    return 0;
-}
-
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
-static struct store *opened(struct fixture *f, const char *path)
+static struct store *opened(struct folder_fixture *f, const char *path)
 {
     struct store *s = store_open(path, STORE_WRITE, &f->e);
     if (s == NULL) fail_msg("%s", f->e.text);
@@ -72,7 +46,7 @@ static bool take_row(void *context, int ncolumn, const char *const *name, const 
 }
 
 /* All rows of a query, a line each; in the test's arena. */
-static const char *rows(struct fixture *f, struct store *s, const char *query)
+static const char *rows(struct folder_fixture *f, struct store *s, const char *query)
 {
     struct text t = {0};
     if (!store_select(s, query, 0, NULL, take_row, &t, &f->e)) fail_msg("%s", f->e.text);
@@ -82,13 +56,14 @@ static const char *rows(struct fixture *f, struct store *s, const char *query)
     return copy;
 }
 
-static long number(struct fixture *f, struct store *s, const char *query)
+static long number(struct folder_fixture *f, struct store *s, const char *query)
 {
     return strtol(rows(f, s, query), NULL, 10);
 }
 
 /* A run by what identifies it; its makespan tells who made it. */
-static void put(struct fixture *f, struct store *s, int rep, enum run_status status, int maker)
+static void put(struct folder_fixture *f, struct store *s, int rep, enum run_status status,
+                int maker)
 {
     const struct run_spec spec =
         made_spec(f->a, rep % 3 ? "t3e-300" : "paragon", 4 + 4 * (rep % 2), 4, rep);
@@ -103,7 +78,7 @@ static void put(struct fixture *f, struct store *s, int rep, enum run_status sta
 }
 
 /* Everything that belongs to the run of this repetition, without numbers of rows. */
-static const char *run_rows(struct fixture *f, struct store *s, int rep)
+static const char *run_rows(struct folder_fixture *f, struct store *s, int rep)
 {
     struct text t = {0};
     text_add(&t,
@@ -131,7 +106,8 @@ struct model {
 };
 
 /* A database with some of the runs, made by a build of its own; its model. */
-static struct model make_source(struct fixture *f, const char *path, int maker, struct random *r)
+static struct model make_source(struct folder_fixture *f, const char *path, int maker,
+                                struct random *r)
 {
     static const enum run_status status[] = {RUN_OK, RUN_OK, RUN_INVALID, RUN_DEADLOCK, RUN_FAILED};
     struct model m = {0};
@@ -178,7 +154,7 @@ static void assert_counts(const struct store_merged *is, const struct store_merg
 
 static void any_merges_do_what_the_model_does(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     for (uint64_t seed = 1; seed <= 5; seed++) {
         struct random r = random_make(seed, 11, 0);
         char path[SOURCES][256];
@@ -240,7 +216,7 @@ static void what_is_refused_changes_nothing(void **state)
         "SELECT (SELECT group_concat(id || ' ' || config_hash || host_s) FROM run), (SELECT "
         "count(*) "
         "FROM build), (SELECT count(*) FROM setting), (SELECT total(total_sum_ps) FROM stage)";
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, f->path);
     put(f, s, 0, RUN_OK, 1);
     const char *before = rows(f, s, all);
@@ -263,7 +239,7 @@ static void what_is_refused_changes_nothing(void **state)
 
 static void files_that_are_none_are_told_apart(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, f->path);
     struct store_merged done;
     put(f, s, 0, RUN_OK, 1);
@@ -282,7 +258,7 @@ static void files_that_are_none_are_told_apart(void **state)
     unlink(f->other);
     /* itself, by each name that a file can have */
     char dotted[300];
-    snprintf(dotted, sizeof dotted, "%s/./main.db", f->folder);
+    snprintf(dotted, sizeof dotted, "%s/./t.db", f->folder);
     assert_int_equal(symlink(f->path, f->other), 0);
     char hard[300];
     snprintf(hard, sizeof hard, "%s/hard.db", f->folder);
@@ -300,7 +276,7 @@ static void files_that_are_none_are_told_apart(void **state)
 
 static void an_older_version_is_refused_with_the_way_out(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct text name = {0}, dump = {0};
     const char *source = getenv("srcdir");
     text_add(&name, "%s/tests/data/store/version-5.sql", source ? source : ".");
@@ -321,7 +297,7 @@ static void an_older_version_is_refused_with_the_way_out(void **state)
  * the other one can be attached again. */
 static void the_store_goes_on_after_each_merge(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, f->path), *other = opened(f, f->other);
     struct store_merged done;
     put(f, s, 0, RUN_OK, 1);
@@ -348,7 +324,8 @@ static void the_store_goes_on_after_each_merge(void **state)
     store_close(s);
 }
 
-static void check_point(struct fixture *f, struct store *s, const char *subject, double value)
+static void check_point(struct folder_fixture *f, struct store *s, const char *subject,
+                        double value)
 {
     static const char *const name[] = {"suite", "subject", "quantity", "at",    "unit",
                                        "value", "class",   "verdict",  "source"};
@@ -362,7 +339,7 @@ static void check_point(struct fixture *f, struct store *s, const char *subject,
  * taken over. */
 static void studies_are_added_and_never_replaced(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, f->path), *other = opened(f, f->other);
     struct store_merged done;
     check_point(f, s, "ring", 1);
@@ -398,7 +375,7 @@ static void studies_are_added_and_never_replaced(void **state)
  * their place may not be anything else. */
 static void tables_that_came_later_may_be_missing(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     for (int view = 0; view < 2; view++) {
         unlink(f->path);
         unlink(f->other);
@@ -423,7 +400,7 @@ static void tables_that_came_later_may_be_missing(void **state)
  * have them. */
 static void rows_of_a_users_own_tables_are_not_merged(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, f->path), *other = opened(f, f->other);
     struct store_merged done;
     put(f, other, 1, RUN_OK, 2);
@@ -446,7 +423,7 @@ static void a_users_own_tables_stay_where_they_are(void **state)
     static const char own[] = "CREATE TABLE my_notes (run_id INTEGER, note TEXT); INSERT INTO "
                               "my_notes VALUES (1, 'slow'); CREATE VIEW my_view AS SELECT 1; "
                               "ANALYZE";
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     for (int side = 0; side < 2; side++) {
         unlink(f->path);
         unlink(f->other);
@@ -466,7 +443,7 @@ static void a_users_own_tables_stay_where_they_are(void **state)
     }
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, drop_folder)
 
 int main(void)
 {

@@ -13,39 +13,13 @@
 
 #include <cmocka.h>
 
-#include "base/arena.h"
 #include "../support/made_run.h"
-#include "../support/scratch.h"
+#include "../support/folder_fixture.h"
 #include "store/image.h"
 #include "store/store.h"
 #include "store/temporary.h"
 
-struct fixture {
-    char folder[200], path[256];
-    struct arena *a;
-    struct err e;
-};
-
-static int begin(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    f->a = arena_create();
-    *state = f;
-    return 0;
-}
-
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
-static struct store *opened(struct fixture *f, enum store_mode mode)
+static struct store *opened(struct folder_fixture *f, enum store_mode mode)
 {
     struct store *s = store_open(f->path, mode, &f->e);
     if (s == NULL) fail_msg("%s", f->e.text);
@@ -53,7 +27,7 @@ static struct store *opened(struct fixture *f, enum store_mode mode)
 }
 
 /* One run, told from others by its repetition. */
-static void put(struct fixture *f, struct store *s, int rep)
+static void put(struct folder_fixture *f, struct store *s, int rep)
 {
     const struct run_spec spec = made_spec(f->a, "t3e-300", 16, 4, rep);
     const struct run_result r = made_result(f->a, &spec);
@@ -68,7 +42,7 @@ static bool take_number(void *context, int ncolumn, const char *const *name,
     return false;
 }
 
-static long number(struct fixture *f, struct store *s, const char *sql)
+static long number(struct folder_fixture *f, struct store *s, const char *sql)
 {
     long n = -1;
     if (!store_select(s, sql, 0, NULL, take_number, &n, &f->e)) fail_msg("%s: %s", sql, f->e.text);
@@ -76,7 +50,7 @@ static long number(struct fixture *f, struct store *s, const char *sql)
 }
 
 /* How many runs the file holds, as any reader sees it. */
-static long runs_in_file(struct fixture *f)
+static long runs_in_file(struct folder_fixture *f)
 {
     struct store *s = opened(f, STORE_READ);
     const long n = number(f, s, "SELECT count(*) FROM run");
@@ -96,7 +70,7 @@ static int files_in(const char *folder)
 
 static void the_file_is_there_when_it_is_whole(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, STORE_WHOLE);
     put(f, s, 0);
     assert_int_equal(files_in(f->folder), 0);
@@ -112,7 +86,7 @@ static void the_file_is_there_when_it_is_whole(void **state)
 
 static void it_is_a_database_like_any_other(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     char header[20] = "";
     struct store *s = opened(f, STORE_WHOLE);
     put(f, s, 0);
@@ -147,7 +121,7 @@ static const char objects[] = "SELECT count(*) FROM sqlite_schema",
  * them. The file has them, and so has whoever asks for one. */
 static void all_tables_are_there_for_who_asks(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, STORE_SCRATCH);
     const long all = number(f, s, objects);
     store_close(s);
@@ -191,7 +165,7 @@ static void all_tables_are_there_for_who_asks(void **state)
 
 static void without_publishing_nothing_is_left(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, STORE_WHOLE);
     put(f, s, 0);
     store_close(s);
@@ -200,7 +174,7 @@ static void without_publishing_nothing_is_left(void **state)
 
 static void a_database_that_is_there_is_written_at_once(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     store_close(opened(f, STORE_WRITE));
     struct store *s = opened(f, STORE_WHOLE);
     put(f, s, 0);
@@ -212,7 +186,7 @@ static void a_database_that_is_there_is_written_at_once(void **state)
 
 static void rows_join_those_of_a_program_that_was_faster(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, STORE_WHOLE), *other = opened(f, STORE_WHOLE);
     put(f, s, 0);
     put(f, other, 0);
@@ -229,7 +203,7 @@ static void rows_join_those_of_a_program_that_was_faster(void **state)
 
 static void the_file_of_another_program_is_never_replaced(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     struct store *s = opened(f, STORE_WHOLE);
     put(f, s, 0);
     FILE *out = fopen(f->path, "w");
@@ -248,7 +222,7 @@ static void the_file_of_another_program_is_never_replaced(void **state)
 
 static void a_folder_that_is_gone_is_told(void **state)
 {
-    struct fixture *f = *state;
+    struct folder_fixture *f = *state;
     char folder[256], path[300];
     scratch_path(folder, sizeof folder, f->folder, "sub");
     assert_int_equal(mkdir(folder, 0777), 0);
@@ -269,15 +243,16 @@ static void a_folder_that_is_gone_is_told(void **state)
 
 int main(void)
 {
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, drop_folder)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_file_is_there_when_it_is_whole, begin, end),
-        cmocka_unit_test_setup_teardown(it_is_a_database_like_any_other, begin, end),
-        cmocka_unit_test_setup_teardown(all_tables_are_there_for_who_asks, begin, end),
-        cmocka_unit_test_setup_teardown(without_publishing_nothing_is_left, begin, end),
-        cmocka_unit_test_setup_teardown(a_database_that_is_there_is_written_at_once, begin, end),
-        cmocka_unit_test_setup_teardown(rows_join_those_of_a_program_that_was_faster, begin, end),
-        cmocka_unit_test_setup_teardown(the_file_of_another_program_is_never_replaced, begin, end),
-        cmocka_unit_test_setup_teardown(a_folder_that_is_gone_is_told, begin, end),
+        TEST(the_file_is_there_when_it_is_whole),
+        TEST(it_is_a_database_like_any_other),
+        TEST(all_tables_are_there_for_who_asks),
+        TEST(without_publishing_nothing_is_left),
+        TEST(a_database_that_is_there_is_written_at_once),
+        TEST(rows_join_those_of_a_program_that_was_faster),
+        TEST(the_file_of_another_program_is_never_replaced),
+        TEST(a_folder_that_is_gone_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,39 +10,24 @@
 
 #include <cmocka.h>
 
-#include "base/arena.h"
 #include "../support/made_run.h"
-#include "../support/scratch.h"
+#include "../support/folder_fixture.h"
 #include "base/text.h"
 #include "store/store.h"
 
 enum { KEYS = 9, RUNS = 60 };
 
 struct fixture {
-    char folder[200], path[256];
-    struct arena *a;
-    struct err e;
+    struct folder_fixture in;
     char *config[RUNS]; /* of each run that was kept, by its repetition; NULL: none */
     uint32_t state;
 };
 
 static int begin(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    f->a = arena_create();
+    struct fixture *f = folder_of(sizeof *f, "t.db");
     f->state = 1;
     *state = f;
-    return 0;
-}
-
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
     return 0;
 }
 
@@ -62,7 +47,7 @@ static char *any_config(struct fixture *f)
     for (int k = 0; k < KEYS; k++)
         if (any(f, 6) > 0) text_add(&t, "key.%d = %d us\n", k, any(f, 3));
     text_add(&t, "last = a = b%s", any(f, 2) ? "\n" : "");
-    char *kept = arena_text(f->a, t.s);
+    char *kept = arena_text(f->in.a, t.s);
     text_free(&t);
     return kept;
 }
@@ -77,7 +62,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
 static void is(struct fixture *f, struct store *s, const char *sql, const char *expected)
 {
     struct text t = {0};
-    if (!store_select(s, sql, 0, NULL, take_text, &t, &f->e)) fail_msg("%s", f->e.text);
+    if (!store_select(s, sql, 0, NULL, take_text, &t, &f->in.e)) fail_msg("%s", f->in.e.text);
     if (strcmp(t.s != NULL ? t.s : "", expected) != 0)
         fail_msg("%s: '%s', expected '%s'", sql, t.s, expected);
     text_free(&t);
@@ -107,20 +92,20 @@ static void check_run(struct fixture *f, struct store *s, int rep)
 /* A run with a configuration of its own; not kept when `undone`. */
 static void put(struct fixture *f, struct store *s, int rep, bool undone)
 {
-    struct run_spec spec = made_spec(f->a, "t3e-300", 16, 4, rep);
+    struct run_spec spec = made_spec(f->in.a, "t3e-300", 16, 4, rep);
     char *config = any_config(f);
     spec.config_text = config;
-    const struct run_result r = made_result(f->a, &spec);
-    if (undone) assert_true(store_begin(s, &f->e));
-    if (!store_put(s, &spec, NULL, &r, &f->e)) fail_msg("run %d: %s", rep, f->e.text);
+    const struct run_result r = made_result(f->in.a, &spec);
+    if (undone) assert_true(store_begin(s, &f->in.e));
+    if (!store_put(s, &spec, NULL, &r, &f->in.e)) fail_msg("run %d: %s", rep, f->in.e.text);
     if (undone) store_rollback(s);
     f->config[rep] = undone ? NULL : config;
 }
 
 static struct store *opened(struct fixture *f, enum store_mode mode)
 {
-    struct store *s = store_open(f->path, mode, &f->e);
-    if (s == NULL) fail_msg("%s", f->e.text);
+    struct store *s = store_open(f->in.path, mode, &f->in.e);
+    if (s == NULL) fail_msg("%s", f->in.e.text);
     return s;
 }
 
@@ -154,7 +139,7 @@ static void what_was_undone_is_not_shared(void **state)
     is(f, s, "SELECT count(*) FROM setting", "0");
     for (int i = 1; i < RUNS; i++) put(f, s, i, i % 2 == 0);
     check_all(f, s);
-    assert_true(store_publish(s, &f->e));
+    assert_true(store_publish(s, &f->in.e));
     store_close(s);
     s = opened(f, STORE_READ);
     check_all(f, s);
@@ -184,7 +169,7 @@ static void a_run_again_has_its_new_lines(void **state)
     store_close(s);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, drop_folder)
 
 int main(void)
 {

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "../support/refused.h"
-#include "../support/scratch.h"
+#include "../support/folder_fixture.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "machine/topology.h"
@@ -19,45 +19,31 @@
 #include "study/netcheck_reference.h"
 
 struct fixture {
-    char folder[200], path[300];
-    struct arena *a;
+    struct folder_fixture in;
     struct netcheck n;
     struct netcheck_reader r;
-    struct err e;
 };
 
 static int begin(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "cases.json");
-    f->a = arena_create();
+    struct fixture *f = folder_of(sizeof *f, "cases.json");
     f->r = (struct netcheck_reader){
-        .n = &f->n, .path = f->path, .rows = f->a, .arena = f->a, .e = &f->e};
+        .n = &f->n, .path = f->in.path, .rows = f->in.a, .arena = f->in.a, .e = &f->in.e};
     *state = f;
     return 0;
 }
 
-static int end(void **state)
-{
-    struct fixture *f = *state;
-    arena_destroy(f->a);
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, drop_folder)
 
 static void refused(struct fixture *f, enum err_kind kind, int line, const char *part)
 {
-    is_refused_at(&f->e, kind, line, part);
+    is_refused_at(&f->in.e, kind, line, part);
 }
 
 static void put_file(struct fixture *f, const char *name, const char *text)
 {
     char path[300];
-    FILE *out = fopen(scratch_path(path, sizeof path, f->folder, name), "wb");
+    FILE *out = fopen(scratch_path(path, sizeof path, f->in.folder, name), "wb");
     assert_non_null(out);
     fputs(text, out);
     fclose(out);
@@ -67,8 +53,8 @@ static void put_file(struct fixture *f, const char *name, const char *text)
 static const struct node *a_case(struct fixture *f, const char *text)
 {
     put_file(f, "cases.json", text);
-    const struct node *c = document_read(f->path, f->a, &f->e);
-    if (c == NULL) fail_msg("%s", f->e.text);
+    const struct node *c = document_read(f->in.path, f->in.a, &f->in.e);
+    if (c == NULL) fail_msg("%s", f->in.e.text);
     return c;
 }
 
@@ -150,7 +136,7 @@ static void forms_are_told_by_one_key_each(void **state)
         enum netcheck_form form;
         bool referred = false;
         if (!netcheck_form_of(&f->r, a_case(f, row[i].text), &form, &referred))
-            fail_msg("%s: %s", row[i].text, f->e.text);
+            fail_msg("%s: %s", row[i].text, f->in.e.text);
         assert_int_equal(form, row[i].form);
         assert_int_equal(referred, row[i].referred);
     }
@@ -230,7 +216,7 @@ static void a_case_with_answers_says_all_of_them(void **state)
         /* a case that is played needs what says what is sent, and no more */
         assert_int_equal(netcheck_keys_complete(&f->r, c, NETCHECK_STEP, false),
                          without < 0 || without > 3);
-        err_clear(&f->e);
+        err_clear(&f->in.e);
         text_free(&t);
     }
 }
@@ -319,7 +305,7 @@ static void rules_have_names_on_their_networks(void **state)
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         enum routing_rule rule;
-        const bool known = netcheck_routing(row[i].name, row[i].family, &rule, &f->e);
+        const bool known = netcheck_routing(row[i].name, row[i].family, &rule, &f->in.e);
         assert_int_equal(known, row[i].rule >= 0);
         if (known) assert_int_equal(rule, row[i].rule);
         else refused(f, ERR_UNAVAILABLE, 0, "is not supported; known:");
@@ -347,8 +333,8 @@ static void routers_are_read_line_by_line(void **state)
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         struct topology_spec s;
-        if (!netcheck_routers_read("net.txt", row[i].text, f->a, &s, &f->e))
-            fail_msg("%d: %s", (int)i, f->e.text);
+        if (!netcheck_routers_read("net.txt", row[i].text, f->in.a, &s, &f->in.e))
+            fail_msg("%d: %s", (int)i, f->in.e.text);
         assert_int_equal(s.family, TOPOLOGY_GRAPH);
         assert_int_equal(s.dims[0], row[i].routers);
         assert_int_equal(s.nlink, row[i].links);
@@ -380,9 +366,9 @@ static void wrong_routers_are_told_with_their_line(void **state)
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         struct topology_spec s;
-        if (netcheck_routers_read("net.txt", row[i].text, f->a, &s, &f->e))
+        if (netcheck_routers_read("net.txt", row[i].text, f->in.a, &s, &f->in.e))
             fail_msg("%s was taken", row[i].text);
-        assert_string_equal(f->e.file, "net.txt");
+        assert_string_equal(f->in.e.file, "net.txt");
         refused(f, ERR_DATA, row[i].line, row[i].part);
     }
 }
@@ -418,7 +404,8 @@ static void cables_are_those_of_both_lines(void **state)
                 if (joined[order[k]][i]) text_add(&t, " router %d", i);
             text_add(&t, "\n");
         }
-        if (!netcheck_routers_read("net.txt", t.s, f->a, &s, &f->e)) fail_msg("%s", f->e.text);
+        if (!netcheck_routers_read("net.txt", t.s, f->in.a, &s, &f->in.e))
+            fail_msg("%s", f->in.e.text);
         assert_int_equal(s.dims[0], n);
         for (int k = 0; k < s.nlink; k++) {
             assert_true(joined[s.link[k][0]][s.link[k][1]]);
@@ -439,7 +426,7 @@ static bool reference(struct fixture *f, const char *topology, const char *kind,
              "{\"topology\": \"%s\", \"routing_function\": \"min\", \"topology_params\": "
              "{\"topology\": \"%s\"%s%s}}",
              topology, kind, params[0] != '\0' ? ", " : "", params);
-    const bool ok = netcheck_reference(&f->r, a_case(f, t.s), out, &f->e);
+    const bool ok = netcheck_reference(&f->r, a_case(f, t.s), out, &f->in.e);
     text_free(&t);
     return ok;
 }
@@ -449,7 +436,7 @@ static void concentrated_networks_are_numbered_in_blocks(void **state)
     struct fixture *f = *state;
     struct netcheck_reference n;
     if (!reference(f, "cmesh", "cmesh", "\"k\": 3, \"n\": 2, \"c\": 4, \"xr\": 2, \"yr\": 2", &n))
-        fail_msg("%s", f->e.text);
+        fail_msg("%s", f->in.e.text);
     assert_int_equal(n.topology.family, TOPOLOGY_MESH);
     assert_int_equal(n.topology.nodes_per_router, 4);
     assert_int_equal(n.topology.ndim, 2);
@@ -465,7 +452,7 @@ static void concentrated_networks_are_numbered_in_blocks(void **state)
             seen[node] = true;
         }
     if (!reference(f, "flatfly", "flatfly", "\"k\": 4, \"n\": 3, \"c\": 2", &n))
-        fail_msg("%s", f->e.text);
+        fail_msg("%s", f->in.e.text);
     assert_int_equal(n.topology.family, TOPOLOGY_HYPERX);
     assert_null(n.node);
     static const char *const wrong[] = {
