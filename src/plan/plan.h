@@ -12,6 +12,12 @@
 #include "plan/range.h"
 #include "spec/run_spec.h"
 
+/* Whether machine m can be built and holds nrank ranks, or all the jobs (NULL: one program); false
+ * with the reason, whose text begins with the key to blame. `work` bounds what is built for a whole
+ * plan: beyond it everything fits until it runs. */
+typedef bool plan_fits(const struct machine_spec *m, int nrank, const struct job_set *jobs,
+                       int64_t *work, struct err *e);
+
 struct plan_options {
     const char *machine; /* --machine NAME or file, NULL: the scenario's */
     /* --name: what the runs are called, NULL: as their files or their differences say */
@@ -26,12 +32,7 @@ struct plan_options {
     const struct program_sheet *(*program)(void *context, const char *path, struct arena *a,
                                            struct err *e);
     void *program_context;
-    /* fits: whether machine m can be built and holds nrank ranks, or all the jobs (NULL: one
-     * program); false with the reason, whose text begins with the key to blame. `work` bounds what
-     * is built for a whole plan: beyond it everything fits until it runs. A NULL function: nobody
-     * is asked. */
-    bool (*fits)(const struct machine_spec *m, int nrank, const struct job_set *jobs,
-                 int64_t *work, struct err *e);
+    plan_fits *fits; /* NULL: nobody is asked */
     /* what identifies the runs (identity_of_runs), borrowed as long as the plan, and knows their
      * texts then; NULL: one of its own */
     struct identity *identity;

@@ -37,9 +37,8 @@ struct scenario {
     struct plan_search *search; /* NULL: nothing is optimised */
     struct scenario_jobs *jobs; /* what shares the machine (jobs_file.h); NULL: one program */
     struct plan_answer *answer; /* NULL: no sentence is wanted */
-    bool (*fits)(const struct machine_spec *m, int nrank, const struct job_set *jobs,
-                 int64_t *work, struct err *e); /* of plan_options */
-    struct identity *identity;                  /* the same */
+    plan_fits *fits;           /* of plan_options */
+    struct identity *identity; /* the same */
     int nfigure;
     const char **figure;
 };
