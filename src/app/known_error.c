@@ -34,7 +34,7 @@ bool known_error_note(struct store *s, struct identity *by, const struct run_spe
     static const char *const name[] = {"run_id", "family"};
     if (!store_begin(s, e)) return false;
     /* Runs of one plan are alike in most of what makes a family. */
-    struct identity *own = by == NULL ? identity_of_runs() : NULL;
+    struct identity *x = identity_or_own(by);
     bool ok = true;
     for (int i = 0; i < n && ok; i++) {
         const int64_t id = store_run_id(s, &run[i]);
@@ -43,11 +43,11 @@ bool known_error_note(struct store *s, struct identity *by, const struct run_spe
         if (!ok || id == 0 || there) continue;
         /* a hash of the whole configuration */
         char family[65];
-        level_family_by(by != NULL ? by : own, &run[i], family);
+        level_family_by(x, &run[i], family);
         const struct store_value value[] = {store_int(id), store_text(family)};
         ok = store_insert(s, "run_family", 2, name, value, e);
     }
-    identity_destroy(own);
+    identity_back(x, by);
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;

@@ -120,10 +120,10 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
                           "split it into several scenarios",
                           n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n,
                           MAX_RUNS);
-    x.identity = s->identity != NULL ? s->identity : identity_of_runs();
+    x.identity = identity_or_own(s->identity);
     p->memory = TAKE(p->arena, 1, struct plan_memory);
     bool fine = expand_points(&x, n);
-    if (s->identity == NULL) identity_destroy(x.identity);
+    identity_back(x.identity, s->identity);
     p->search = s->search;
     p->answer = s->answer;
     p->memory->scenario = s;
@@ -162,10 +162,10 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
         if (!setting_list_add(&set, key[i], text[i], "optimise", 0, p->arena, e)) return false;
     s.set = set;
     s.ncondition = 0;
-    x.identity = s.identity != NULL ? s.identity : identity_of_runs();
+    x.identity = identity_or_own(s.identity);
     /* conditions were asked when the plan was made */
     const int made = make_point(&x, run);
-    if (s.identity == NULL) identity_destroy(x.identity);
+    identity_back(x.identity, s.identity);
     run->rep = p->run[index].rep;
     return made == 1;
 }

@@ -44,7 +44,7 @@ struct expansion {
     const struct setting_list *job; /* the settings of the job that is made, NULL: there are none */
     const struct err *room; /* why its jobs do not fit together, NULL: they do */
     struct run_spec *run;         /* the plan's */
-    struct identity *identity;    /* owned */
+    struct identity *identity;    /* the scenario's, or of our own (identity_or_own) */
     struct machine_changes changes; /* of the machines seen so far */
     struct calls calls;             /* what runs are called */
     size_t text_bytes;              /* settings of all runs so far, as texts */

@@ -80,6 +80,16 @@ void identity_destroy(struct identity *x)
     free(x);
 }
 
+struct identity *identity_or_own(struct identity *lent)
+{
+    return lent != NULL ? lent : identity_of_runs();
+}
+
+void identity_back(struct identity *x, const struct identity *lent)
+{
+    if (x != lent) identity_destroy(x);
+}
+
 /* Two runs may have lists of equal length at one address after the arena was used again. */
 void identity_forget(struct identity *x)
 {

@@ -24,6 +24,11 @@ struct identity *identity_of_runs(void);
 /* identity_destroy: accepts NULL. */
 void identity_destroy(struct identity *x);
 
+/* identity_or_own: `lent`, or one of runs where it is NULL, to be given to identity_back at the end
+ * with the same `lent`: that destroys what was not lent. */
+struct identity *identity_or_own(struct identity *lent);
+void identity_back(struct identity *x, const struct identity *lent);
+
 /* identity_forget: forget the texts of the run before. Lists are remembered by their place in
  * memory: to be called before the arena of earlier runs is released and used anew. */
 void identity_forget(struct identity *x);
