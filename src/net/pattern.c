@@ -18,37 +18,39 @@
 /* Routes that pattern_channel_load follows, digits, and numbers of a pattern, at most. */
 enum { MOST_ROUTES = 1 << 24, MOST_DIGITS = 31, MOST_NUMBERS = 16 };
 
-/* Every name, and whether it permutes bits of the node's number. The first of a rule is the one
- * that messages list. */
+/* Every name, how many numbers stand behind it, with an example for messages, and whether it
+ * permutes bits of the node's number. The first of a rule is the one that messages list. */
 static const struct {
     const char *word;
     enum pattern_rule rule;
+    int least, most;
+    const char *example;
     bool power_of_two, alias;
 } rules[] = {
-    {"uniform", PATTERN_UNIFORM, false, false},
-    {"bitcomp", PATTERN_BIT_COMPLEMENT, true, false},
-    {"bitrev", PATTERN_BIT_REVERSE, true, false},
-    {"transpose", PATTERN_TRANSPOSE, true, false},
-    {"shuffle", PATTERN_SHUFFLE, true, false},
-    {"tornado", PATTERN_TORNADO, false, false},
-    {"neighbor", PATTERN_NEIGHBOUR, false, false},
-    {"shift", PATTERN_SHIFT, false, false},
-    {"xor", PATTERN_XOR, true, false},
-    {"randperm", PATTERN_PERMUTATION, false, false},
-    {"bad_dragon", PATTERN_BAD_GROUP, false, false},
-    {"badrandom", PATTERN_BAD_GROUP, false, true},
-    {"hotspot", PATTERN_HOT_SPOT, false, false},
+    {"uniform", PATTERN_UNIFORM, 0, 0, "uniform", false, false},
+    {"bitcomp", PATTERN_BIT_COMPLEMENT, 0, 0, "bitcomp", true, false},
+    {"bitrev", PATTERN_BIT_REVERSE, 0, 0, "bitrev", true, false},
+    {"transpose", PATTERN_TRANSPOSE, 0, 0, "transpose", true, false},
+    {"shuffle", PATTERN_SHUFFLE, 0, 0, "shuffle", true, false},
+    {"tornado", PATTERN_TORNADO, 0, 2, "tornado(8,2) or tornado", false, false},
+    {"neighbor", PATTERN_NEIGHBOUR, 0, 2, "neighbor(8,2) or neighbor", false, false},
+    {"shift", PATTERN_SHIFT, 1, 1, "shift(1)", false, false},
+    {"xor", PATTERN_XOR, 1, 1, "xor(1)", true, false},
+    {"randperm", PATTERN_PERMUTATION, 0, 1, "randperm(1)", false, false},
+    {"bad_dragon", PATTERN_BAD_GROUP, 0, 0, "bad_dragon", false, false},
+    {"badrandom", PATTERN_BAD_GROUP, 0, 0, "badrandom", false, true},
+    {"hotspot", PATTERN_HOT_SPOT, 0, MOST_NUMBERS, "hotspot(0,5)", false, false},
 };
 enum { RULES = sizeof rules / sizeof *rules };
 
 /* ---- names */
 
-/* The numbers in `text`, whatever stands between them. One beyond INT_MAX becomes INT_MAX, which
- * every check of a range refuses. */
+/* How many numbers are in `text`, whatever stands between them, and the first `most` of them. One
+ * beyond INT_MAX becomes INT_MAX, which every check of a range refuses. */
 static int numbers_in(const char *text, int *number, int most)
 {
     int n = 0;
-    while (*text && n < most) {
+    while (*text) {
         char *end;
         if (!isdigit((unsigned char)*text)) {
             text++;
@@ -56,7 +58,8 @@ static int numbers_in(const char *text, int *number, int most)
         }
         errno = 0;
         long x = strtol(text, &end, 10);
-        number[n++] = errno || x > INT_MAX ? INT_MAX : (int)x;
+        if (n < most) number[n] = errno || x > INT_MAX ? INT_MAX : (int)x;
+        n++;
         text = end;
     }
     return n;
@@ -72,6 +75,25 @@ static bool numbers_are_whole(const char *text, struct err *e)
     return (strspn(rest, "0123456789,_(){} ") == length && (rest[0] == '(') == closed) ||
            err_set(e, ERR_DATA,
                    "pattern '%.64s': expected whole numbers in brackets, such as (8,2)", text);
+}
+
+/* As many numbers as the pattern has a use for, in one list: BookSim's second list of a hotspot is
+ * of rates. */
+static bool numbers_are_used(const char *text, int n, int rule, struct err *e)
+{
+    const int least = rules[rule].least, most = rules[rule].most;
+    const char *list = strchr(text, '{');
+    if (list && strchr(list + 1, '{'))
+        return err_set(e, ERR_DATA,
+                       "pattern '%.64s': expected one list of nodes; one is hit as often as "
+                       "it is named",
+                       text);
+    if (n >= least && n <= most) return true;
+    char expected[48] = "none";
+    if (most > least) snprintf(expected, sizeof expected, "%d to %d", least, most);
+    else if (most > 0) snprintf(expected, sizeof expected, "%d", most);
+    return err_set(e, ERR_DATA, "pattern '%.64s': %d number%s; expected %s, as in %s", text, n,
+                   n == 1 ? "" : "s", expected, rules[rule].example);
 }
 
 /* All names, for a message. */
@@ -128,9 +150,8 @@ static bool digits_read(struct pattern *p, const char *text, const struct topolo
 }
 
 /* shift(d) and xor(d). */
-static bool distance_read(struct pattern *p, const char *text, int n, struct err *e)
+static bool distance_read(struct pattern *p, const char *text, struct err *e)
 {
-    if (n < 1) return err_set(e, ERR_DATA, "pattern '%.64s': its distance is missing", text);
     if (p->distance < p->nnode) return true;
     return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text,
                    p->nnode);
@@ -150,9 +171,6 @@ static bool spots_read(struct pattern *p, const char *text, const int *number, i
                        struct arena *a, struct err *e)
 {
     int *spot = TAKE(a, MOST_NUMBERS, int);
-    if (n > MOST_NUMBERS)
-        return err_set(e, ERR_DATA, "pattern '%.64s': expected at most %d nodes", text,
-                       MOST_NUMBERS);
     /* Node 0 if none is named. */
     p->nspot = n > 0 ? n : 1;
     p->spot = spot;
@@ -181,10 +199,10 @@ static void permutation_draw(struct pattern *p, uint64_t seed, struct arena *a)
 bool pattern_read(struct pattern *p, const char *text, const struct topology *t, struct arena *a,
                   struct err *e)
 {
-    /* One more than any pattern takes, to see that there are too many. */
-    int number[MOST_NUMBERS + 1] = {0};
-    const int n = numbers_in(text, number, MOST_NUMBERS + 1), found = rule_of(text, e);
-    if (found < 0 || !numbers_are_whole(text, e)) return false;
+    int number[MOST_NUMBERS] = {0};
+    const int n = numbers_in(text, number, MOST_NUMBERS), found = rule_of(text, e);
+    if (found < 0 || !numbers_are_whole(text, e) || !numbers_are_used(text, n, found, e))
+        return false;
     *p = (struct pattern){.rule = rules[found].rule, .nnode = t->nnode, .distance = number[0]};
     /* bits = ceil(log2 nnode); a pattern of bits needs it exact. */
     while (p->bits < 30 && 1 << p->bits < t->nnode) p->bits++;
@@ -196,7 +214,7 @@ bool pattern_read(struct pattern *p, const char *text, const struct topology *t,
         return digits_read(p, text, t, number, n, a, e);
     case PATTERN_SHIFT:
     case PATTERN_XOR:
-        return distance_read(p, text, n, e);
+        return distance_read(p, text, e);
     case PATTERN_BAD_GROUP:
         return group_read(p, text, t, e);
     case PATTERN_HOT_SPOT:

@@ -50,6 +50,8 @@ unknown key 'weight' of a message#{"topology": "mesh4x4", "messages": [{"src": 0
 'points' must be a list of loads; it is empty#{"topology": "mesh4x4", "pattern": "uniform", "packet_flits": 4, "points": []}
 unknown pattern 'unifrom'; did you mean 'uniform'?#{"topology": "mesh4x4", "pattern": "unifrom", "packet_flits": 4, "points": [{"offered": 0.1, "plat": 9, "cycles": 100}]}
 'shift(16)': expected a distance below the 16 nodes#{"topology": "mesh4x4", "pattern": "shift(16)", "packet_flits": 4, "points": [{"offered": 0.1, "plat": 9, "cycles": 100}]}
+pattern 'uniform(5)': 1 number; expected none, as in uniform#{"topology": "mesh4x4", "pattern": "uniform(5)", "packet_flits": 4, "points": [{"offered": 0.1, "plat": 9, "cycles": 100}]}
+pattern 'shift(1,2)': 2 numbers; expected 1, as in shift(1)#{"topology": "mesh4x4", "pattern": "shift(1,2)", "packet_flits": 4, "points": [{"offered": 0.1, "plat": 9, "cycles": 100}]}
 0 < saturation_low < saturation_high <= 1#{"topology": "mesh4x4", "pattern": "uniform", "packet_flits": 4, "saturation_low": 0.4, "saturation_high": 0.3}
 END
 }
