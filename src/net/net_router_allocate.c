@@ -363,9 +363,12 @@ static sim_ps allocate_together(struct routers *g, int n, sim_ps now)
         if (won && winner_sends(g, b, now)) continue;
         again = router_sooner(again, ps_later(now, b->out->flit));
     }
-    for (int i = 0; i < g->nask; i++)
-        if (router_waits(g->ask[i].in))
+    /* Of a lane that has sent, the next head waits, too, but did not ask: it has a look coming. */
+    for (int i = 0; i < g->nask; i++) {
+        const struct lane *in = g->ask[i].in;
+        if (in->due <= now && router_waits(in))
             again = router_sooner(again, ps_later(now, g->port[g->ask[i].out->port].flit));
+    }
     return again;
 }
 

@@ -159,7 +159,7 @@ static void same(const struct traffic_result *x, const struct traffic_result *y,
 
 /* All times, in one number: what both ways of playing have in common, as how a lane moves on that
  * is alone at its router, cannot be seen by comparing them. */
-static const uint64_t TIMES = 0x54f9bb9b9f867d37;
+static const uint64_t TIMES = 0x7aaa5f0991afb8f0;
 
 static uint64_t times_mix(uint64_t digest, const struct traffic_result *x, int n)
 {
@@ -204,6 +204,21 @@ static void gathered_and_single_events_give_the_same(void **state)
     assert_int_equal(times, TIMES);
 }
 
+/* The list that is drawn from `trial` for the nodes of m, both ways. */
+static void lists_agree(const struct machine_spec *m, int nnode, int trial)
+{
+    struct arena *a = arena_create();
+    struct random r = random_make((uint64_t)trial, 0, 0);
+    struct traffic q;
+    struct traffic_result x, y;
+    struct err e;
+    err_clear(&e);
+    draw_list(&r, nnode, a, &q);
+    assert_true(play(m, &q, true, a, &x, &e) && play(m, &q, false, a, &y, &e));
+    same(&x, &y, q.nmessage, trial);
+    arena_destroy(a);
+}
+
 /* A sender that waits for places learns of them when they are given away, not when it happens to
  * look: on this network one of some hundred lists showed the difference. */
 static void places_are_found_without_a_look_by_chance(void **state)
@@ -217,24 +232,34 @@ static void places_are_found_without_a_look_by_chance(void **state)
     struct machine_spec m = netcheck_machine(&s, 2, 8, 4, 4);
     m.network.routing = ROUTING_VALIANT;
     m.network.level = LEVEL_PACKET;
-    for (int trial = 100; trial < 150; trial++) {
-        struct arena *a = arena_create();
-        struct random r = random_make((uint64_t)trial, 0, 0);
-        struct traffic q;
-        struct traffic_result x, y;
-        struct err e;
-        err_clear(&e);
-        draw_list(&r, 4, a, &q);
-        assert_true(play(&m, &q, true, a, &x, &e) && play(&m, &q, false, a, &y, &e));
-        same(&x, &y, q.nmessage, trial);
-        arena_destroy(a);
-    }
+    for (int trial = 100; trial < 150; trial++) lists_agree(&m, 4, trial);
+}
+
+/* Links of two rates, heads with several ways on: a lane that has sent its packet does not ask for
+ * the head behind it, so that no look comes early for that alone. Seven of these lists showed the
+ * difference. */
+static void a_head_that_did_not_ask_has_no_second_look(void **state)
+{
+    (void)state;
+    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
+                                    .ndim = 2,
+                                    .dims = {3, 2},
+                                    .nodes_per_router = 1,
+                                    .processors_per_node = 1,
+                                    .tie = TIE_RANDOM,
+                                    .dim_bandwidth = {0, 5e9}};
+    struct machine_spec m = netcheck_machine(&s, 4, 64, 4, 3);
+    m.network.routing = ROUTING_BOOKSIM_MIN_ADAPT;
+    m.network.level = LEVEL_PACKET;
+    m.network.allocator_iterations = 1;
+    for (int trial = 25; trial < 165; trial++) lists_agree(&m, 6, trial);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_are_found_without_a_look_by_chance),
+        cmocka_unit_test(a_head_that_did_not_ask_has_no_second_look),
         cmocka_unit_test(gathered_and_single_events_give_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
