@@ -17,6 +17,7 @@
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/memory.h"
+#include "reality/condition.h"
 #include "run/real.h"
 #include "spec/run_label.h"
 #include "spec/task.h"
@@ -30,7 +31,8 @@ static const char doc[] =
     "and kernels in one file, with the same checks and stages. Each task is simulated first; what "
     "deadlocks or fails there is not run. Then it is repeated; repetitions in which the system "
     "took "
-    "a processor away are not counted. The machine of the scenario does not act "
+    "a processor away are not counted. They come in five bursts, before and after which it is "
+    "measured how fast the computer is just now. The machine of the scenario does not act "
     "(docs/reality.md).\n\n"
     "--samples N: undisturbed repetitions that are wanted (default 30). --limit SECONDS: no "
     "further repetition of a task after this time (default 5).";
@@ -160,6 +162,13 @@ static void note(struct backend *b, const struct run_spec *spec, const struct re
                 "mimdsim: %s%s: the answer differs from repetition to repetition, within its "
                 "tolerance\n",
                 spec->kernel.name, run_size(spec, r->nrank).s);
+    const struct condition condition = condition_of(r);
+    if (r->status == RUN_OK && condition_changed(&condition) && !b->c->quiet)
+        fprintf(stderr,
+                "mimdsim: %s%s: the computer's speed changed during %d of %d bursts; predict does "
+                "not count the run\n",
+                spec->kernel.name, run_size(spec, r->nrank).s, condition.bursts - condition.steady,
+                condition.bursts);
     if (r->oversubscribed && b->crowded++ == 0 && !b->c->quiet)
         fprintf(stderr, "mimdsim: %d ranks on %d processors: answers are right, times say little\n",
                 r->nrank, r->processors);
@@ -253,7 +262,7 @@ int backend_run(int argc, char **argv, const char *backend)
 {
     struct common c;
     struct job job = {.kept = -1};
-    struct backend b = {.c = &c, .job = &job};
+    struct backend b = {.c = &c, .job = &job, .order.bursts = REAL_BURSTS};
     struct plan p = {0};
     struct err e;
     err_clear(&e);

@@ -6,6 +6,7 @@
  *
  * The exit status of a computer that is too busy is that of a locked database: try again. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -13,8 +14,10 @@
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/beside.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "host/host_load.h"
+#include "host/host_speed.h"
 #include "hosts/hosts_copy.h"
 #include "reality/calibrate.h"
 
@@ -29,9 +32,12 @@ static const char doc[] =
     "counted; when too few are left, nothing is written and the exit status is 75. Messages need "
     "two processes: mpirun -n 2 mimdsim calibrate. With one there are rates alone "
     "(docs/reality.md).\n\n"
+    "Kernels and loops are measured at the beginning and at the end, and the lesser times are "
+    "kept; it is told when the computer's speed changed between. How fast it was is noted in the "
+    "file, where predict finds it.\n\n"
     "--quick: fewer samples and sizes of kernels, under 30 s; else under 5 minutes.";
 
-enum { TAG_DONE = 600, QUICK_SAMPLES = 60, FULL_SAMPLES = 400 };
+enum { TAG_DONE = 600, QUICK_SAMPLES = 60, FULL_SAMPLES = 400, MORE_PASSES = 3 };
 
 /* How much is measured: samples of messages, repetitions of kernels. Both are what is wanted; more
  * are made where some are disturbed. */
@@ -48,43 +54,83 @@ static struct effort effort_of(bool quick)
                  : (struct effort){FULL_SAMPLES, 40, 4, true};
 }
 
+/* What is measured on the first process alone, in several passes. Both plans live as long. */
+struct alone {
+    struct plan kernels, loops; /* loops: none without gcc */
+    struct passes kernel, loop;
+};
+
 /* Loops of a program in one file, which `mimdsim cc` compiles first: without gcc the machine file
  * has one price for all instructions, and says so. */
-static bool measure_code(const struct common *c, const struct effort *effort,
-                         struct calibration *out, struct err *e)
+static bool open_alone(struct alone *x, const struct common *c, struct calibration *out,
+                       struct err *e)
 {
-    struct plan p = {0};
     struct plan_options o = common_plan(c);
     struct err without;
     err_clear(&without);
+    if (!plan_read(&x->kernels, "calibrate", &o, e)) return false;
     /* A scenario with a program: reading it compiles, once for this computer. */
-    out->has_code = plan_read(&p, "calibrate-code", &o, &without);
+    out->has_code = plan_read(&x->loops, "calibrate-code", &o, &without);
     if (!out->has_code && !c->quiet)
         fprintf(stderr, "mimdsim: the code of programs in one file is not measured: %s\n",
                 without.text);
+    return true;
+}
+
+/* One pass over both, of all points or of those that took longer than at the computer's best. */
+static bool pass(struct alone *x, const struct common *c, const struct effort *effort, double least,
+                 struct calibration *out, struct err *e)
+{
+    rates_loops(&out->rates);
+    return passes_run(&x->kernel, &x->kernels, "kernels", effort->kernels, effort->seconds, least,
+                      c->quiet, e) &&
+           (!out->has_code || passes_run(&x->loop, &x->loops, "loops", effort->kernels,
+                                         effort->seconds, least, c->quiet, e));
+}
+
+/* Rates by what has been kept so far. */
+static bool fit_kernels(const struct alone *x, struct calibration *out, struct err *e)
+{
+    out->rates.n = x->kernel.n;
+    memcpy(out->rates.sample, x->kernel.kept, sizeof out->rates.sample);
+    return rates_fit(&out->rates) ||
+           err_set(e, ERR_DATA, "%d points are too few to fit rates to", out->rates.n);
+}
+
+/* The second pass, others where that did not meet the computer at its best, and what they say. */
+static bool finish_alone(struct alone *x, const struct common *c, const struct effort *effort,
+                         struct calibration *out, struct err *e)
+{
+    if (!pass(x, c, effort, 0, out, e)) return false;
+    double least = passes_least(&x->loop, passes_least(&x->kernel, 0));
+    for (int i = 0; i < MORE_PASSES; i++) {
+        if (passes_slow(&x->kernel, least) + passes_slow(&x->loop, least) == 0) break;
+        if (!pass(x, c, effort, least, out, e)) return false;
+        least = passes_least(&x->loop, passes_least(&x->kernel, least));
+    }
+    out->points = x->kernel.n + x->loop.n;
+    out->slow = passes_slow(&x->kernel, least) + passes_slow(&x->loop, least);
+    out->changed = passes_changed(&x->kernel, &x->loop, &out->changed_by);
+    const double message = out->condition.rates.time[HOST_MESSAGE];
+    out->condition.rates = passes_speed(&x->kernel);
+    out->condition.rates.time[HOST_MESSAGE] = message;
+    out->condition.code = passes_speed(&x->loop);
+    if (!fit_kernels(x, out, e)) return false;
     /* What no loop tells is priced as measured before. */
     const struct node_spec node = rates_node(&out->rates, out->clock);
-    const bool ok = !out->has_code ||
-                    code_rates_measure(&p, &node, effort->kernels, effort->seconds, c->quiet,
-                                       &out->code, e);
-    plan_free(&p);
-    return ok;
+    return !out->has_code || code_rates_take(&x->loops, &x->loop, &node, &out->code, e);
 }
 
 /* The kernels on the first process alone; the others sleep until it is done: spinning, they would
  * heat the processor and take memory bandwidth. */
-static bool measure_rates(struct job *job, const struct common *c, const struct effort *effort,
-                          struct calibration *out, struct err *e)
+static bool measure_rates(struct job *job, struct alone *x, const struct common *c,
+                          const struct effort *effort, bool first, struct calibration *out,
+                          struct err *e)
 {
-    struct plan p = {0};
-    struct plan_options o = common_plan(c);
     bool ok = true;
-    if (job->h.rank == 0) {
-        ok = plan_read(&p, "calibrate", &o, e) &&
-             rates_measure(&p, effort->kernels, effort->seconds, c->quiet, &out->rates, e);
-        plan_free(&p);
-        ok = ok && measure_code(c, effort, out, e);
-    }
+    if (job->h.rank == 0 && first)
+        ok = open_alone(x, c, out, e) && pass(x, c, effort, 0, out, e) && fit_kernels(x, out, e);
+    else if (job->h.rank == 0) ok = finish_alone(x, c, effort, out, e);
     if (!hosts_tell(&job->h, TAG_DONE, &ok, sizeof ok))
         return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
     return ok;
@@ -99,7 +145,16 @@ static bool measure_messages(struct job *job, const struct effort *effort, struc
     struct host_comm *comm = host_comm_create(&job->h, e);
     if (comm == NULL) return false;
     out->has_messages = true;
-    const bool ok = messages_measure(&job->h, comm, effort->messages, &out->messages, e);
+    struct host_speed before, after;
+    const bool ok = (host_speed_now(&job->h, comm, &before) &&
+                     messages_measure(&job->h, comm, effort->messages, &out->messages, e) &&
+                     host_speed_now(&job->h, comm, &after)) ||
+                    (e->kind == ERR_NONE &&
+                     err_set(e, ERR_INTERNAL, "%s reports an error", job->h.call->library));
+    /* Messages were measured between the two. */
+    if (ok)
+        out->condition.rates.time[HOST_MESSAGE] =
+            (before.time[HOST_MESSAGE] + after.time[HOST_MESSAGE]) / 2;
     host_comm_destroy(comm);
     return ok;
 }
@@ -147,9 +202,15 @@ static bool measure(struct job *job, const struct common *c, bool quick, struct 
     const struct host_load_begin load = host_load_start();
     const double own = host_processor_seconds();
     out->clock = calibration_clock();
-    if (!measure_rates(job, c, &effort, out, e) || !measure_messages(job, &effort, out, e) ||
-        !measure_collectives(job, c, &effort, out, e))
-        return false;
+    struct alone *x = memory_zeroed(1, sizeof *x);
+    const bool ok = measure_rates(job, x, c, &effort, true, out, e) &&
+                    measure_messages(job, &effort, out, e) &&
+                    measure_collectives(job, c, &effort, out, e) &&
+                    measure_rates(job, x, c, &effort, false, out, e);
+    plan_free(&x->kernels);
+    plan_free(&x->loops);
+    free(x);
+    if (!ok) return false;
     int64_t used = (int64_t)((host_processor_seconds() - own) * 1e9);
     if (!job->h.call->reduce(HOSTS_SUM, &used, 1))
         return err_set(e, ERR_INTERNAL, "%s cannot reach all processes", job->h.call->library);
@@ -187,6 +248,9 @@ static void say(const struct calibration *c, const char *path)
                "predict\n",
                c->collectives.n, 100 * c->collectives.median_residual,
                100 * c->collectives.residual);
+    char remark[500];
+    calibration_remark(c, remark, sizeof remark);
+    if (remark[0] != '\0') printf("%s.\n", remark);
     printf("load: other programs kept %.2f processors busy\n", c->load.others);
 }
 

@@ -13,6 +13,7 @@
 
 #include "app/arguments.h"
 #include "app/flag.h"
+#include "app/measured_run.h"
 #include "app/verb.h"
 #include "base/memory.h"
 #include "base/sorted.h"
@@ -31,18 +32,23 @@ static const char doc[] =
     "to "
     "be right, by which factor, and the stage that differs most. Runs with more ranks than "
     "processors, "
-    "and those with fewer than 5 undisturbed repetitions, are shown and not counted "
-    "(docs/reality.md).\n\n"
+    "those with fewer than 5 undisturbed repetitions, and those during which the computer's speed "
+    "changed, are shown and not counted.\n\n"
+    "A real run notes how fast the computer was before and after each burst of repetitions, and "
+    "calibrate notes it in the machine file. Column slower tells how many times as long the "
+    "prediction is with the machine's prices times what operations took at the run, over what they "
+    "took then; error_at_% is the error of that prediction (docs/reality.md).\n\n"
     "--stages: each stage on a line of its own.";
 
 enum { MOST_ROWS = 1000 };
 
-/* A measured run as it is stored: where and when, and what predict.h needs of it. `found` says
- * whether there was any. */
-struct measured {
-    char id[32], host[64], utc[32];
-    struct real_result real;
-    bool found;
+/* The prediction at the condition of a run: with the machine's prices as its operations took at the
+ * burst that is the middle one of all. */
+struct at_condition {
+    bool known;
+    double measured, predicted; /* [s] */
+    double error;
+    double slower; /* predicted, over what the machine predicts as it is */
 };
 
 /* What all rows together say: the errors of those that count, whose median and largest end the
@@ -52,82 +58,14 @@ struct summary {
     struct store *store;
     bool stages;
     double error[MOST_ROWS]; /* (n) of those that count, by size */
-    int n, shown, missing;
+    double at[MOST_ROWS];    /* (nat) the same at their condition */
+    double least, most;      /* of these: how many times longer the prediction is there */
+    int n, nat, shown, missing, unnoted;
     char machines[256]; /* told last: which machine predicts, and what was measured */
     struct json json;
 };
 
-/* --- reading ---------------------------------------------------------------------------------- */
-
-/* A number as the database gives it: a whole one where it has no fraction, nothing where it was not
- * known when the row was stored. */
-static double real_of(const struct store_value *v)
-{
-    return v->kind == STORE_REAL ? v->real : v->kind == STORE_INT ? (double)v->integer : NAN;
-}
-
-/* The columns of the query below, in its order. Only what a comparison needs is read: the samples
- * themselves stay in the database. */
-static bool take_run(void *context, int n, const char *const *name, const struct store_value *v)
-{
-    struct measured *m = context;
-    (void)n, (void)name;
-    m->found = true;
-    text_copy(m->id, sizeof m->id, v[0].text);
-    text_copy(m->host, sizeof m->host, v[1].text);
-    text_copy(m->utc, sizeof m->utc, v[2].text);
-    m->real.time.min = real_of(&v[3]);
-    m->real.time.median = real_of(&v[4]);
-    m->real.nsample = (int)v[5].integer;
-    m->real.disturbed = (int)v[6].integer;
-    m->real.load.others = real_of(&v[7]);
-    m->real.load.before = real_of(&v[8]);
-    m->real.oversubscribed = v[9].integer != 0;
-    return false; /* the latest alone */
-}
-
-/* Stages in the order of the program; more than there can be are of another version and are left
- * out. */
-static bool take_stage(void *context, int n, const char *const *name, const struct store_value *v)
-{
-    struct measured *m = context;
-    (void)n, (void)name;
-    if (m->real.nstage > RUN_MAX_STAGES) return false;
-    struct real_stage *s = &m->real.stage[m->real.nstage++];
-    text_copy(s->name, sizeof s->name, v[0].text);
-    s->median_s = real_of(&v[1]);
-    return true;
-}
-
-/* The latest measurement of a task that went well, from whichever computer it is: the table does
- * not mix several, and older ones stay where they are for other questions. */
-static bool find(struct store *s, const char *task, struct measured *out, struct err *e)
-{
-    const char *const by_task[] = {task};
-    memset(out, 0, sizeof *out);
-    if (!store_query(
-            s,
-            "SELECT real_id, host, created_utc, min_s, median_s, samples, disturbed, "
-            "load_others, load_before, oversubscribed FROM real_run WHERE task_hash = ?1 "
-            "AND status = 'ok' AND median_s > 0 ORDER BY created_utc DESC, real_id LIMIT 1",
-            1, by_task, NULL, take_run, out, e))
-        return false;
-    if (!out->found) return true;
-    const char *const by_id[] = {out->id};
-    return store_query(s, "SELECT name, median_s FROM real_stage WHERE real_id = ?1 ORDER BY stage",
-                       1, by_id, NULL, take_stage, out, e);
-}
-
 /* --- printing --------------------------------------------------------------------------------- */
-
-/* Why a row does not count; "": it does. More ranks than processors take turns, which no machine
- * model here describes; too few undisturbed repetitions are no measurement. */
-static const char *left_out(const struct measured *m)
-{
-    if (m->real.oversubscribed) return "more ranks than processors";
-    if (m->real.nsample - m->real.disturbed < REAL_LEAST_SAMPLES) return "disturbed";
-    return "";
-}
 
 /* Measured, then predicted; a stage that only one of the two has shows nan for the other one. */
 static void print_stages(const struct prediction *p)
@@ -146,7 +84,8 @@ static const char *machine_of(const struct run_spec *spec)
 
 /* Which machine predicts and which computer was measured, before the first row and wherever one of
  * them changes: they are two, and may be meant to be one. */
-static void print_machines(struct summary *s, const struct run_spec *spec, const struct measured *m)
+static void print_machines(struct summary *s, const struct run_spec *spec,
+                           const struct measured_run *m)
 {
     char now[sizeof s->machines];
     snprintf(now, sizeof now, "predicted on %s, measured on %s", machine_of(spec), m->host);
@@ -157,46 +96,56 @@ static void print_machines(struct summary *s, const struct run_spec *spec, const
 
 /* The title comes with the first row, so that an empty answer is only its message. The load is that
  * of the measurement: a difference that is due to other programs is not the model's. */
-static void print_row(struct summary *s, const struct run_spec *spec, const struct measured *m,
-                      const struct prediction *p)
+static void print_row(struct summary *s, const struct run_spec *spec, const struct measured_run *m,
+                      const struct prediction *p, const struct at_condition *at)
 {
-    char why[48] = "-", load[24] = "-";
+    char why[48] = "-", load[24] = "-", slower[24] = "-", error[24] = "-";
     print_machines(s, spec, m);
     if (s->shown == 0)
-        printf("%-18s %6s %4s %12s %12s %8s %6s  %-34s %s\n", "program", "n", "P", "measured_us",
-               "predicted_us", "error_%", "load", "explained by", "stage");
+        printf("%-18s %6s %4s %12s %12s %8s %6s %7s %10s  %-34s %s\n", "program", "n", "P",
+               "measured_us", "predicted_us", "error_%", "load", "slower", "error_at_%",
+               "explained by", "stage");
     if (p->explains < PRICES)
         snprintf(why, sizeof why, "%s x %.2f", price_name(p->explains), p->factor);
     if (isfinite(m->real.load.others)) snprintf(load, sizeof load, "%.2f", m->real.load.others);
     else if (isfinite(m->real.load.before))
         snprintf(load, sizeof load, "(%.1f)", m->real.load.before);
-    printf("%-18s %6d %4d %12.3f %12.3f %8.1f %6s  %-34s %s%s%s\n", spec->kernel.name,
+    if (at->known) {
+        snprintf(slower, sizeof slower, "%.2f", at->slower);
+        snprintf(error, sizeof error, "%.1f", 100 * at->error);
+    }
+    printf("%-18s %6d %4d %12.3f %12.3f %8.1f %6s %7s %10s  %-34s %s%s%s\n", spec->kernel.name,
            spec->model.nbody, spec->nrank, p->measured * 1e6, p->predicted * 1e6, 100 * p->error,
-           load, why, p->worst >= 0 ? p->stage[p->worst].name : "-",
-           left_out(m)[0] != '\0' ? "; not counted: " : "", left_out(m));
+           load, slower, error, why, p->worst >= 0 ? p->stage[p->worst].name : "-",
+           measured_run_left_out(m)[0] != '\0' ? "; not counted: " : "", measured_run_left_out(m));
     if (s->stages) print_stages(p);
 }
 
 /* The same for programs, with all stages and in SI units; keys are in alphabetical order, as
  * everywhere. */
-static void print_json(struct summary *s, const struct run_spec *spec, const struct measured *m,
-                       const struct prediction *p)
+static void print_json(struct summary *s, const struct run_spec *spec, const struct measured_run *m,
+                       const struct prediction *p, const struct at_condition *at)
 {
     struct json *j = &s->json;
     json_object(j);
     json_key_int(j, "P", spec->nrank);
-    json_key_bool(j, "counted", left_out(m)[0] == '\0');
+    json_key_int(j, "bursts", m->condition.bursts);
+    json_key_bool(j, "counted", measured_run_left_out(m)[0] == '\0');
     json_key_real(j, "error", p->error);
+    json_key_real(j, "error_at_condition", at->known ? at->error : NAN);
     json_key_text(j, "explained_by", p->explains < PRICES ? price_name(p->explains) : "");
     json_key_real(j, "factor", p->factor);
     json_key_text(j, "host", m->host);
     json_key_real(j, "load_before", m->real.load.before);
     json_key_real(j, "load_others", m->real.load.others);
     json_key_text(j, "machine", machine_of(spec));
+    json_key_real(j, "measured_at_condition_s", at->known ? at->measured : NAN);
     json_key_real(j, "measured_s", p->measured);
     json_key_int(j, "n", spec->model.nbody);
+    json_key_real(j, "predicted_at_condition_s", at->known ? at->predicted : NAN);
     json_key_real(j, "predicted_s", p->predicted);
     json_key_text(j, "program", spec->kernel.name);
+    json_key_real(j, "slower", at->known ? at->slower : NAN);
     json_key(j, "stages");
     json_array(j);
     for (int i = 0; i < p->nstage; i++) {
@@ -207,6 +156,7 @@ static void print_json(struct summary *s, const struct run_spec *spec, const str
         json_end(j);
     }
     json_end(j);
+    json_key_int(j, "steady_bursts", m->condition.steady);
     json_key_text(j, "utc", m->utc);
     json_end(j);
 }
@@ -218,10 +168,20 @@ static void print_summary(struct summary *s)
     if (s->missing > 0 && !s->c->quiet)
         fprintf(stderr, "mimdsim: %d of the tasks have no measured run in %s\n", s->missing,
                 s->c->database);
+    if (s->unnoted > 0 && !s->c->quiet)
+        fprintf(stderr, "mimdsim: the machine file does not say how fast the computer was when it "
+                        "was calibrated, so no prediction is made at the condition of a run: "
+                        "calibrate again\n");
     if (s->c->json || s->n == 0) return;
     sort_numbers(s->error, (size_t)s->n);
     printf("error of %d: median %.1f %%, largest %.1f %%\n", s->n, 100 * s->error[s->n / 2],
            100 * s->error[s->n - 1]);
+    if (s->nat == 0) return;
+    sort_numbers(s->at, (size_t)s->nat);
+    printf("error at the condition of each run (the machine's prices times what operations took "
+           "there, which makes predictions %.2f to %.2f times as long) of %d: median %.1f %%, "
+           "largest %.1f %%\n",
+           s->least, s->most, s->nat, 100 * s->at[s->nat / 2], 100 * s->at[s->nat - 1]);
 }
 
 /* --- the command ------------------------------------------------------------------------------ */
@@ -239,7 +199,7 @@ static bool is_first(const struct plan *p, const struct run_spec *task, int i)
 /* A shipped machine is never the computer at hand. Who means to compare with one says so; who
  * forgot the machine file of this computer would take the difference for an error of the model. */
 static bool check_machine(const struct summary *s, const struct run_spec *run,
-                          const struct measured *m, struct err *e)
+                          const struct measured_run *m, struct err *e)
 {
     bool named = s->c->machine != NULL || run->machine_changes == NULL;
     for (int i = 0; i < s->c->nset; i++)
@@ -252,23 +212,82 @@ static bool check_machine(const struct summary *s, const struct run_spec *run,
                    m->host, run->machine.name, m->host, run->machine.name);
 }
 
-/* A task that nobody measured costs nothing; one that was is simulated a dozen times (predict.c).
- */
-static bool predict_one(struct summary *s, const struct run_spec *run, const struct run_spec *task,
-                        struct run_cache *cache, struct err *e)
+/* How fast the computer was when run i's machine was measured; false where its file does not say.
+ * A machine that nobody measured has nothing to say. */
+static bool reference_of(struct summary *s, const struct plan *p, int i,
+                         struct condition_reference *out)
 {
-    struct measured m;
+    const struct origin *origin;
+    int n;
+    plan_origins(p, i, &origin, &n);
+    if (condition_reference_of(origin, n, out)) return true;
+    for (int k = 0; k < n; k++)
+        s->unnoted += strcmp(origin[k].key, "node.flop_rate") == 0 &&
+                      strcmp(origin[k].evidence, "measured") == 0;
+    return false;
+}
+
+/* Each steady burst beside what the machine would predict at the burst's condition. The one whose
+ * error is the middle one stands for the run: a look that missed a change does not decide. */
+static bool predict_at(struct summary *s, const struct plan *p, int i, const struct measured_run *m,
+                       double as_it_is, struct run_cache *cache, struct at_condition *out,
+                       struct err *e)
+{
+    struct condition_reference reference;
+    double error[REAL_BURSTS], predicted[REAL_BURSTS];
+    const struct condition *c = &m->condition;
+    *out = (struct at_condition){0};
+    if (c->steady == 0 || !reference_of(s, p, i, &reference)) return true;
+    for (int k = 0; k < c->steady; k++) {
+        struct run_spec spec = p->run[i];
+        struct arena *a = arena_create();
+        struct run_result *r = TAKE(a, 1, struct run_result);
+        condition_apply(&spec.machine, &reference, &c->burst[k].speed);
+        const bool ok = predict_simulate(&spec, cache, a, r, e);
+        if (ok) predicted[k] = (double)r->makespan_ps * 1e-12;
+        arena_destroy(a);
+        if (!ok) return false;
+        error[k] = predicted[k] / c->burst[k].seconds - 1;
+    }
+    const int middle = condition_middle(error, c->steady);
+    *out = (struct at_condition){true, c->burst[middle].seconds, predicted[middle], error[middle],
+                                 predicted[middle] / as_it_is};
+    return true;
+}
+
+/* What counts, with and without the condition. */
+static void count(struct summary *s, const struct prediction *p, const struct at_condition *at)
+{
+    if (s->n == MOST_ROWS) return;
+    s->error[s->n++] = fabs(p->error);
+    if (!at->known) return;
+    if (s->nat == 0) s->least = s->most = at->slower;
+    s->least = fmin(s->least, at->slower);
+    s->most = fmax(s->most, at->slower);
+    s->at[s->nat++] = fabs(at->error);
+}
+
+/* A task that nobody measured costs nothing; one that was is simulated about a dozen times
+ * (predict.c). */
+static bool predict_one(struct summary *s, const struct plan *plan, int i,
+                        const struct run_spec *task, struct run_cache *cache, struct err *e)
+{
+    const struct run_spec *run = &plan->run[i];
+    struct measured_run m;
     struct prediction p;
-    if (!find(s->store, task->config_hash, &m, e)) return false;
+    struct at_condition at;
+    if (!measured_run_find(s->store, task->config_hash, &m, e)) return false;
     if (!m.found) {
         s->missing++;
         return true;
     }
-    if (!check_machine(s, run, &m, e) || !predict_run(run, &m.real, cache, &p, e)) return false;
-    if (s->c->json) print_json(s, run, &m, &p);
-    else print_row(s, run, &m, &p);
+    if (!check_machine(s, run, &m, e) || !predict_run(run, &m.real, cache, &p, e) ||
+        !predict_at(s, plan, i, &m, p.predicted, cache, &at, e))
+        return false;
+    if (s->c->json) print_json(s, run, &m, &p, &at);
+    else print_row(s, run, &m, &p, &at);
     s->shown++;
-    if (left_out(&m)[0] == '\0' && s->n < MOST_ROWS) s->error[s->n++] = fabs(p.error);
+    if (measured_run_left_out(&m)[0] == '\0') count(s, &p, &at);
     return true;
 }
 
@@ -283,7 +302,7 @@ static bool predict_all(struct summary *s, const struct plan *p, struct err *e)
     for (int i = 0; ok && i < p->nrun; i++) {
         task[i] = task_of(&p->run[i], p->arena);
         if (p->run[i].refused == NULL && is_first(p, task, i))
-            ok = predict_one(s, &p->run[i], &task[i], cache, e);
+            ok = predict_one(s, p, i, &task[i], cache, e);
     }
     run_cache_destroy(cache);
     if (ok && s->c->json) {

@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/sorted.h"
+#include "base/text.h"
 #include "measure/real_row.h"
 
 /* --- statistics ------------------------------------------------------------------------------- */
@@ -15,6 +16,39 @@ struct real_times real_times_of(double *value, int n)
     return (struct real_times){value[0], sorted_quantile(value, n, 0.25),
                                sorted_quantile(value, n, 0.5), sorted_quantile(value, n, 0.75),
                                value[n - 1]};
+}
+
+/* --- speed ------------------------------------------------------------------------------------ */
+
+const char *host_operation_name(enum host_operation o)
+{
+    static const char *const name[HOST_OPERATIONS] = {"multiply_add", "call", "chain", "copy",
+                                                      "message"};
+    return name[o];
+}
+
+/* Four digits of each: a tenth of a per mille of what is compared by per cents. */
+void real_bursts_text(const struct real_result *r, char *text, size_t size)
+{
+    struct text t = {0};
+    text[0] = '\0';
+    if (r->nburst == 0) return;
+    text_add(&t, "{\"bursts\":[");
+    for (int i = 0; i < r->nburst; i++) text_add(&t, "%s%d", i > 0 ? "," : "", r->burst[i].n);
+    text_add(&t, "]");
+    for (int o = 0; o < HOST_OPERATIONS; o++) {
+        /* Of one rank there are no messages. */
+        if (r->burst[0].before.time[o] <= 0) continue;
+        text_add(&t, ",\"%s\":[", host_operation_name((enum host_operation)o));
+        for (int i = 0; i < r->nburst; i++)
+            text_add(&t, "%s%.4g,%.4g", i > 0 ? "," : "", r->burst[i].before.time[o] * 1e9,
+                     r->burst[i].after.time[o] * 1e9);
+        text_add(&t, "]");
+    }
+    text_add(&t, "}");
+    CHECK(t.length < size);
+    text_copy(text, size, t.s);
+    text_free(&t);
 }
 
 /* --- columns ---------------------------------------------------------------------------------- */
@@ -43,7 +77,8 @@ static const struct column real_column[] = {
      .doc = "1: more ranks on a computer than processors"},
     /* How it ended, and how long it took. */
     {"status", COLUMN_WORD, REAL(status), WORDS(status_word), .doc = "how it ended"},
-    {"text", COLUMN_CHARS, REAL(text), .doc = "why it is not ok"},
+    {"text", COLUMN_CHARS, REAL(text),
+     .doc = "why it is not ok; else how fast the computer was [ns], JSON"},
     {"samples", COLUMN_INT, REAL(nsample), .doc = "repetitions"},
     {"disturbed", COLUMN_INT, REAL(disturbed),
      .doc = "of them, those in which the host took a processor away: not in the statistics"},

@@ -13,6 +13,7 @@
 #include "measure/run_result.h"
 
 enum { REAL_LEAST_SAMPLES = 5 }; /* fewer undisturbed ones: statistics are over all */
+enum { REAL_BURSTS = 5 };        /* of one run, at most */
 
 /* How long something took over repetitions [s]. */
 struct real_times {
@@ -33,6 +34,32 @@ struct host_load {
     double others, before, after;
 };
 
+/* Operations by which it is told how fast a computer is just now: an addition or multiplication
+ * among many that wait for nothing, a small operator that waits for the one before, an instruction
+ * of a chain of additions, a byte copied, a message of 8 B. */
+enum host_operation {
+    HOST_MULTIPLY_ADD,
+    HOST_CALL,
+    HOST_CHAIN,
+    HOST_COPY,
+    HOST_MESSAGE,
+    HOST_OPERATIONS
+};
+
+/* host_operation_name: "multiply_add", "call", "chain", "copy", "message". */
+const char *host_operation_name(enum host_operation o);
+
+/* What each takes just now [s], 0: not measured. */
+struct host_speed {
+    double time[HOST_OPERATIONS];
+};
+
+/* Repetitions that were made one after the other, and the computer's speed before and after. */
+struct real_burst {
+    int n; /* repetitions, disturbed ones included */
+    struct host_speed before, after;
+};
+
 struct real_sample {
     double seconds;
     bool disturbed;
@@ -40,7 +67,8 @@ struct real_sample {
 
 struct real_result {
     enum run_status status;
-    char text[1024];              /* why it is not RUN_OK */
+    /* why it is not RUN_OK; else the computer's speed, see real_bursts_text */
+    char text[1024];
     char backend[8], library[24]; /* "mpi"; "MPICH", "Open MPI" */
     char host[64], processor[64], placement[64];
     int nrank, processors;      /* processors: of the first host that the job may use */
@@ -49,6 +77,8 @@ struct real_result {
     struct real_sample *sample; /* (nsample) in the arena of the run */
     struct real_times time;
     struct host_load load;
+    int nburst;                           /* 0: the speed is not known */
+    struct real_burst burst[REAL_BURSTS]; /* (nburst) samples in their order; stored in text */
 
     bool same_bits;    /* the answer is that of the simulated run, bit by bit */
     bool repeatable;   /* all repetitions gave the same bits */
@@ -64,6 +94,11 @@ struct real_result {
 
 /* real_times_of: of n >= 1 values, which are sorted in place. */
 struct real_times real_times_of(double *value, int n);
+
+/* real_bursts_text: the bursts as JSON into `text`: {"bursts": [repetitions], "multiply_add": [ns
+ * before and after the first burst, before and after the second ...], ...}; nothing where there are
+ * none. */
+void real_bursts_text(const struct real_result *r, char *text, size_t size);
 
 /* The columns: of struct real_result, real_stage, real_sample. */
 extern const struct column_table real_result_columns, real_stage_columns, real_sample_columns;

@@ -44,13 +44,24 @@ static void leaf(struct text *t, const char *indent, const char *key, const char
              source, c->host, c->date);
 }
 
+/* The same with how fast the computer was: `place` is the key in full. */
+static void noted_leaf(struct text *t, const char *indent, const char *place, const char *value,
+                       const char *source, const struct calibration *c)
+{
+    char noted[256];
+    const char *dot = strrchr(place, '.');
+    text_copy(noted, sizeof noted, source);
+    condition_note(&c->condition, place, noted, sizeof noted);
+    leaf(t, indent, dot != NULL ? dot + 1 : place, value, noted, c);
+}
+
 /* A price as cycles of the stated clock. */
-static void cycles(struct text *t, const char *key, double price, const char *source,
+static void cycles(struct text *t, const char *place, double price, const char *source,
                    const struct calibration *c)
 {
     char value[48];
     snprintf(value, sizeof value, "%.4g cycles", price * c->clock);
-    leaf(t, "  ", key, value, source, c);
+    noted_leaf(t, "  ", place, value, source, c);
 }
 
 /* The finer prices of programs in one file, all of one fit. */
@@ -65,7 +76,9 @@ static void add_code(const struct calibration *c, struct text *t)
         /* Nothing at all would mean something else. */
         const double price = fmax(r->price[i], 1e-6);
         snprintf(value, sizeof value, "%.4g cycles", price);
-        leaf(t, "    ", code_price_name(i), value, source, c);
+        char place[48];
+        snprintf(place, sizeof place, "node.code.%s", code_price_name(i));
+        noted_leaf(t, "    ", place, value, source, c);
     }
 }
 
@@ -80,21 +93,23 @@ static void add_node(const struct calibration *c, struct text *t)
     text_add(t, "node:\n");
     /* At least 1 flop/s is asked for; a flop that costs nothing gets the largest rate there is. */
     snprintf(value, sizeof value, "%.4g Mflop/s", r->flop > 0 ? 1e-6 / r->flop : 1e9);
-    leaf(t, "  ", "flop_rate", value, "products of a 6x6 matrix and a vector, least time", c);
+    noted_leaf(t, "  ", "node.flop_rate", value,
+               "products of a 6x6 matrix and a vector, least time", c);
     snprintf(value, sizeof value, "%.0f MHz", c->clock * 1e-6);
     leaf(t, "  ", "clock", value, "as the system states it: the unit of the cycles below", c);
-    cycles(t, "div", r->div, source, c);
-    cycles(t, "sqrt", r->sqrt, "a loop of roots, each of the one before, least time", c);
-    cycles(t, "trig", r->trig, "a loop over 512 angles, least time", c);
+    cycles(t, "node.div", r->div, source, c);
+    cycles(t, "node.sqrt", r->sqrt, "a loop of roots, each of the one before, least time", c);
+    cycles(t, "node.trig", r->trig, "a loop over 512 angles, least time", c);
     if (c->has_code) add_code(c, t);
     else
-        cycles(t, "instruction", r->instruction,
+        cycles(t, "node.instruction", r->instruction,
                "a scalar product, five instructions an element, least time", c);
     snprintf(value, sizeof value, "%.4g ns", r->call * 1e9);
-    leaf(t, "  ", "call", value, source, c);
+    noted_leaf(t, "  ", "node.call", value, source, c);
     text_add(t, "  copy:\n");
     snprintf(value, sizeof value, "%.4g MB/s", 1e-6 / r->copy);
-    leaf(t, "    ", "bandwidth", value, "copies of 16 KiB within the first cache, least time", c);
+    noted_leaf(t, "    ", "node.copy.bandwidth", value,
+               "copies of 16 KiB within the first cache, least time", c);
 }
 
 /* One segment on a line, with how well its lines fit. */
@@ -207,8 +222,26 @@ static void add_kernels(const struct calibration *c, struct text *t)
     }
 }
 
+void calibration_remark(const struct calibration *c, char *text, size_t size)
+{
+    int n = 0;
+    text[0] = '\0';
+    if (c->changed > c->points / 10)
+        n = snprintf(text, size,
+                     "This computer's speed changed during calibration: %d of %d points took over "
+                     "%.0f %% longer in one pass than in the other, %.0f %% in their median; the "
+                     "lesser times are kept",
+                     c->changed, c->points, 100 * PASSES_SAME, 100 * c->changed_by);
+    if (c->slow > c->points / 10 && n < (int)size)
+        snprintf(text + n, size - (size_t)n,
+                 "%s%d of %d points were slowed down by over %.0f %% whenever they were measured: "
+                 "better calibrate again",
+                 n > 0 ? ". " : "", c->slow, c->points, 100 * PASSES_SAME);
+}
+
 void calibration_text(const struct calibration *c, struct text *t)
 {
+    char remark[500];
     text_add(t, "# Measured by mimdsim calibrate on %s, %s: %s, %d processors, %s.\n", c->host,
              c->date, c->processor[0] != '\0' ? c->processor : "unknown processor", c->processors,
              c->library);
@@ -216,6 +249,10 @@ void calibration_text(const struct calibration *c, struct text *t)
              "# Load meanwhile: other programs kept %.2f processors busy; load average %.2f "
              "before, %.2f after.\n",
              c->load.others, c->load.before, c->load.after);
+    calibration_remark(c, remark, sizeof remark);
+    if (remark[0] != '\0') text_add(t, "# %s.\n", remark);
+    text_add(t, "# probe: what an operation took meanwhile, to which predict compares it when a "
+                "program runs.\n");
     text_add(t, "schema_version: 1\ntitle: \"%s, measured %s\"\n\ntopology:\n", c->host, c->date);
     leaf(t, "  ", "family", "crossbar", "processors of one computer", c);
     leaf(t, "  ", "dims", "[1]", "the same", c);
@@ -225,7 +262,7 @@ void calibration_text(const struct calibration *c, struct text *t)
     text_add(t, "\n");
     add_node(c, t);
     text_add(t, "\nnetwork:\n  level: loggp\n  link:\n");
-    leaf(t, "    ", "bandwidth", "unlimited", "the rate is in the segments", c);
+    noted_leaf(t, "    ", "network.link.bandwidth", "unlimited", "the rate is in the segments", c);
     if (c->has_messages) add_software(c, t);
     if (c->has_messages) add_points(c, t);
     add_kernels(c, t);

@@ -6,6 +6,7 @@
 #include "measure/real_row.h"
 #include "reality/code_rates.h"
 #include "reality/collective_times.h"
+#include "reality/condition.h"
 #include "reality/messages.h"
 #include "reality/rates.h"
 
@@ -18,11 +19,20 @@ struct calibration {
     struct messages messages;
     bool has_collectives; /* and no more of them than processors */
     struct collective_times collectives;
+    struct condition_reference condition; /* how fast the computer was meanwhile */
+    int points;          /* kernels and loops */
+    int changed;         /* of them: passes_changed, by this part */
+    double changed_by;
+    int slow;            /* of them: slowed down whenever they were measured */
     struct host_load load;
     char host[64], processor[64], library[24], date[16];
     int processors; /* of this computer that the job may use */
     double clock;   /* [Hz]: for cycle counts, as the system states it; 1e9 where it does not */
 };
+
+/* calibration_remark: what was measured under another condition than the rest, as sentences
+ * without a last full stop; "" where a tenth of the points at most took 10 % longer in one pass. */
+void calibration_remark(const struct calibration *c, char *text, size_t size);
 
 /* calibration_text: the machine file, every number with its residual, class "measured", date and
  * host; appended. */

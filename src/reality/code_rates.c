@@ -10,10 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/progress.h"
 #include "reality/fit.h"
 #include "reality/predict.h"
-#include "reality/rates.h"
 #include "run/run.h"
 
 /* So many times this part of the way, as the piece beyond may have other slopes. With half of it
@@ -151,28 +149,18 @@ static void name_of(const struct run_spec *spec, struct code_sample *s)
     snprintf(s->what, sizeof s->what, "%.24s, %.*s", spec->kernel.name, n, n > 0 ? loop : "");
 }
 
-bool code_rates_measure(const struct plan *p, const struct node_spec *node, int samples,
-                        double seconds, bool quiet, struct code_rates *out, struct err *e)
+bool code_rates_take(const struct plan *p, const struct passes *measured,
+                     const struct node_spec *node, struct code_rates *out, struct err *e)
 {
     struct simulated x = {p, node, run_cache_create()};
-    struct host_comm *comm = host_comm_create(NULL, e);
-    struct progress progress = progress_make("loops", p->nrun, quiet);
-    bool ok = comm != NULL;
-    out->n = 0;
-    for (int i = 0; ok && i < p->nrun && i < CODE_RATES_MOST; i++) {
-        struct rate_sample one;
-        struct code_sample *s = &out->sample[out->n];
-        ok = rate_sample_take(&p->run[i], comm, samples, seconds, x.cache, &one, e);
-        if (!ok) break;
-        *s = (struct code_sample){
-            .seconds = one.seconds, .samples = one.samples, .disturbed = one.disturbed};
-        name_of(&p->run[i], s);
-        out->n++;
-        progress_show(&progress, i + 1);
+    out->n = measured->n < CODE_RATES_MOST ? measured->n : CODE_RATES_MOST;
+    for (int i = 0; i < out->n; i++) {
+        const struct rate_sample *one = &measured->kept[i];
+        out->sample[i] = (struct code_sample){
+            .seconds = one->seconds, .samples = one->samples, .disturbed = one->disturbed};
+        name_of(&p->run[i], &out->sample[i]);
     }
-    progress_end(&progress);
-    ok = ok && code_rates_fit(out, simulated_time, &x, e);
+    const bool ok = code_rates_fit(out, simulated_time, &x, e);
     run_cache_destroy(x.cache);
-    host_comm_destroy(comm);
     return ok;
 }

@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "plan/plan.h"
+#include "reality/passes.h"
 
 enum { CODE_RATES_MOST = 24, CODE_PRICES = 12 };
 
@@ -38,10 +39,10 @@ typedef bool code_time_fn(void *context, int i, const double *price, double *sec
  * samples. */
 bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, struct err *e);
 
-/* code_rates_measure: run the points of plan `p` on one rank in this process and fit prices to
- * them; what divisions, roots and elementary functions cost is that of `node`. Errors as
- * rates_measure. */
-bool code_rates_measure(const struct plan *p, const struct node_spec *node, int samples,
-                        double seconds, bool quiet, struct code_rates *out, struct err *e);
+/* code_rates_take: fit prices to the times that the points of plan `p` took (passes.h), in their
+ * order; what divisions, roots and elementary functions cost is that of `node`. Errors as
+ * code_rates_fit and run_one. */
+bool code_rates_take(const struct plan *p, const struct passes *measured,
+                     const struct node_spec *node, struct code_rates *out, struct err *e);
 
 #endif

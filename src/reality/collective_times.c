@@ -135,7 +135,7 @@ bool collective_times_measure(struct plan *p, const struct hosts *hosts, struct 
 {
     static const int64_t size[] = {8, 1024, 65536, 1048576};
     const int nsize = large ? 4 : 3;
-    struct measuring m = {p, hosts, comm, machine, {samples, seconds}, run_cache_create(), out};
+    struct measuring m = {p, hosts, comm, machine, {samples, seconds, 0}, run_cache_create(), out};
     bool ok = true;
     out->n = out->left_out = 0;
     out->nrank = hosts->size;

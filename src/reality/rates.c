@@ -8,8 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/progress.h"
-#include "host/host_load.h"
+#include "host/host_speed.h"
 #include "linalg/angle.h"
 #include "reality/fit.h"
 #include "run/real.h"
@@ -17,34 +16,10 @@
 enum {
     UNKNOWNS = 3,
     CHAIN = 1000,
-    ROWS = 6,
-    PER_PRODUCT = 5,
     ANGLES = 512,
-    COPY_BYTES = 16384,
-    COPY_ROUNDS = 64,
-    COPY_SAMPLES = 200,
+    LOOP_SAMPLES = 200,
     LEAST_GOOD = 3
 };
-
-/* Copies are too few in kernels on one rank to be fitted: a block is copied to and fro, within the
- * first cache, as packing does it. */
-static double copy_price(void)
-{
-    char *a = memory_zeroed(COPY_BYTES, 1), *b = memory_zeroed(COPY_BYTES, 1);
-    double least = INFINITY;
-    for (int i = 0; i < COPY_SAMPLES; i++) {
-        const int64_t switches = host_switches(), begin = host_clock_ns();
-        for (int k = 0; k < COPY_ROUNDS; k++) {
-            memcpy(k % 2 ? a : b, k % 2 ? b : a, COPY_BYTES);
-            __asm__ volatile("" ::: "memory"); /* the copy is made, although nobody reads it */
-        }
-        const double took = (double)(host_clock_ns() - begin) * 1e-9;
-        if (host_switches() == switches) least = fmin(least, took / COPY_ROUNDS / COPY_BYTES);
-    }
-    free(a);
-    free(b);
-    return least;
-}
 
 /* Least time of one operation in a loop in which each waits for the one before, as pivots and
  * angles do in kernels [s]. */
@@ -52,7 +27,7 @@ static double root_price(void)
 {
     double least = INFINITY;
     volatile double seed = 2;
-    for (int i = 0; i < COPY_SAMPLES; i++) {
+    for (int i = 0; i < LOOP_SAMPLES; i++) {
         double x = seed;
         const int64_t switches = host_switches(), begin = host_clock_ns();
         for (int k = 0; k < CHAIN; k++) x = sqrt(x + 1);
@@ -68,7 +43,7 @@ static double angle_price(void)
 {
     double least = INFINITY, angle[ANGLES], sine[ANGLES], cosine[ANGLES];
     for (int k = 0; k < ANGLES; k++) angle[k] = 0.01 * k;
-    for (int i = 0; i < COPY_SAMPLES; i++) {
+    for (int i = 0; i < LOOP_SAMPLES; i++) {
         const int64_t switches = host_switches(), begin = host_clock_ns();
         for (int k = 0; k < ANGLES; k++) angle_sincos(angle[k], &sine[k], &cosine[k]);
         const double took = (double)(host_clock_ns() - begin) * 1e-9;
@@ -77,48 +52,6 @@ static double angle_price(void)
         if (host_switches() == switches) least = fmin(least, took / ANGLES / 2);
     }
     return least;
-}
-
-/* Products of a 6x6 matrix and a vector, as the operators of kernels are made of, within the first
- * cache. */
-static double flop_price(void)
-{
-    double least = INFINITY, a[ROWS * ROWS], x[ROWS], y[ROWS];
-    for (int k = 0; k < ROWS * ROWS; k++) a[k] = 1.0 / (k + 1);
-    for (int k = 0; k < ROWS; k++) x[k] = 1;
-    for (int i = 0; i < COPY_SAMPLES; i++) {
-        const int64_t switches = host_switches(), begin = host_clock_ns();
-        for (int round = 0; round < CHAIN; round++) {
-            for (int r = 0; r < ROWS; r++) {
-                double sum = 0;
-                for (int k = 0; k < ROWS; k++) sum += a[r * ROWS + k] * x[k];
-                y[r] = sum;
-            }
-            __asm__ volatile("" ::"r"(y), "r"(a), "r"(x) : "memory"); /* each round is made */
-        }
-        const double took = (double)(host_clock_ns() - begin) * 1e-9;
-        if (host_switches() == switches) least = fmin(least, took / CHAIN / (2 * ROWS * ROWS));
-    }
-    return least;
-}
-
-/* A scalar product, whose sum waits for each product: five instructions an element (load, load and
- * multiply, add, advance, branch), as node_cost.c counts them where no file says what one costs. */
-static double instruction_price(void)
-{
-    double least = INFINITY, x[ANGLES], y[ANGLES];
-    volatile double kept = 0;
-    for (int k = 0; k < ANGLES; k++) x[k] = y[k] = 1.0 / (k + 1);
-    for (int i = 0; i < COPY_SAMPLES; i++) {
-        const int64_t switches = host_switches(), begin = host_clock_ns();
-        double sum = 0;
-        for (int k = 0; k < ANGLES; k++) sum += x[k] * y[k];
-        kept = sum;
-        const double took = (double)(host_clock_ns() - begin) * 1e-9;
-        __asm__ volatile("" ::"r"(x), "r"(y) : "memory");
-        if (host_switches() == switches) least = fmin(least, took / ANGLES / PER_PRODUCT);
-    }
-    return kept >= 0 ? least : INFINITY;
 }
 
 /* Divisions, calls of small operators and a constant are fitted. Flops, roots and angles grow with
@@ -167,7 +100,7 @@ struct node_spec rates_node(const struct rates *r, double clock)
 bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int samples,
                       double seconds, struct run_cache *cache, struct rate_sample *s, struct err *e)
 {
-    const struct real_order order = {samples, seconds};
+    const struct real_order order = {samples, seconds, 1};
     struct arena *a = arena_create();
     struct real_result *r = TAKE(a, 1, struct real_result);
     bool ok = run_real(spec, NULL, comm, &order, cache, a, r, e);
@@ -177,7 +110,9 @@ bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int s
         *s = (struct rate_sample){.work = r->work,
                                   .seconds = r->time.median,
                                   .samples = r->nsample,
-                                  .disturbed = r->disturbed};
+                                  .disturbed = r->disturbed,
+                                  .before = r->burst[0].before,
+                                  .after = r->burst[0].after};
         snprintf(s->what, sizeof s->what, "%.24s, n = %d", spec->kernel.name, spec->model.nbody);
         if (r->nsample - r->disturbed < LEAST_GOOD)
             ok = err_set(e, ERR_BUSY,
@@ -189,27 +124,16 @@ bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int s
     return ok;
 }
 
-bool rates_measure(const struct plan *p, int samples, double seconds, bool quiet, struct rates *out,
-                   struct err *e)
+static void lesser(double *kept, double again)
 {
-    struct host_comm *comm = host_comm_create(NULL, e);
-    struct run_cache *cache = run_cache_create();
-    struct progress progress = progress_make("kernels", p->nrun, quiet);
-    memset(out, 0, sizeof *out);
-    bool ok = true;
-    for (int i = 0; ok && i < p->nrun && i < RATES_MOST; i++) {
-        ok = rate_sample_take(&p->run[i], comm, samples, seconds, cache, &out->sample[out->n], e);
-        out->n += ok;
-        progress_show(&progress, i + 1);
-    }
-    progress_end(&progress);
-    out->copy = copy_price();
-    out->flop = flop_price();
-    out->instruction = instruction_price();
-    out->sqrt = root_price();
-    out->trig = angle_price();
-    run_cache_destroy(cache);
-    host_comm_destroy(comm);
-    return ok && (rates_fit(out) ||
-                  err_set(e, ERR_DATA, "%d points are too few to fit rates to", out->n));
+    if (*kept <= 0 || again < *kept) *kept = again;
+}
+
+void rates_loops(struct rates *r)
+{
+    lesser(&r->copy, host_speed_least(HOST_COPY));
+    lesser(&r->flop, host_speed_least(HOST_MULTIPLY_ADD));
+    lesser(&r->instruction, host_speed_least(HOST_CHAIN));
+    lesser(&r->sqrt, root_price());
+    lesser(&r->trig, angle_price());
 }

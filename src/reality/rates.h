@@ -6,6 +6,7 @@
 #include "base/err.h"
 #include "base/work.h"
 #include "host/host_comm.h"
+#include "measure/real_row.h"
 #include "plan/plan.h"
 #include "run/run.h"
 
@@ -17,6 +18,7 @@ struct rate_sample {
     struct work work;    /* counted */
     double seconds;      /* median of the undisturbed repetitions */
     int samples, disturbed;
+    struct host_speed before, after; /* how fast this computer was */
 };
 
 /* Prices [s], and how well they explain the samples. */
@@ -39,11 +41,9 @@ bool rate_sample_take(const struct run_spec *spec, struct host_comm *comm, int s
 /* rates_node: a processor with these prices, of `clock` [Hz]. */
 struct node_spec rates_node(const struct rates *r, double clock);
 
-/* rates_measure: run the points of plan `p` on one rank in this process, each for at most `seconds`
- * after at least a few repetitions, and fit prices to them. ERR_BUSY when the host disturbs too
- * many of the repetitions; else as run_real. */
-bool rates_measure(const struct plan *p, int samples, double seconds, bool quiet, struct rates *out,
-                   struct err *e);
+/* rates_loops: what has loops of its own (copies, flops, roots, angles, instructions): their least
+ * times, or those of `r` where these are less; 0 there: none yet. */
+void rates_loops(struct rates *r);
 
 /* rates_fit: the prices of samples that are there. False when they are too few. */
 bool rates_fit(struct rates *r);

@@ -18,6 +18,9 @@
 struct real_order {
     int samples;    /* undisturbed repetitions that are wanted; 0: 30 */
     double seconds; /* no further repetition after this time; 0: 5 */
+    /* parts, of at least 3 wanted repetitions each, before and after which the computer's speed is
+     * measured, with a pause of 20 ms between them; at most REAL_BURSTS. 0: one, without that */
+    int bursts;
 };
 
 /* run_real: make `spec` with its ranks on the processes of the job. Called by all of them with

@@ -41,7 +41,7 @@ struct real {
     int64_t *facts; /* (P x FACTS) of the last repetition */
     int nstage, nrank;
     char stage_name[RUN_MAX_STAGES][24];
-    double *stage[2]; /* (MOST_SAMPLES x (nstage + 1)) mean and largest over ranks [s] */
+    double *stage[2]; /* (repetitions x (nstage + 1)) mean and largest over ranks [s] */
     uint64_t first_digest;
 };
 
@@ -56,6 +56,21 @@ bool real_simulate(struct real *r, struct err *e);
  * which compares it with the simulated answer and has it checked; called by all. False: a process
  * does not answer. */
 bool real_judge(struct real *r, struct program_run *run, struct arena *own, struct arena *scratch);
+
+/* real_repeat: all ranks once more, facts gathered. `judged`: the answer is gathered and checked.
+ * False with an error when it cannot be made or a process does not answer. */
+bool real_repeat(struct real *r, bool judged, struct err *e);
+
+/* real_sample: repetitions until there are enough, or the time is up: r->out->sample, burst, and
+ * the stages of each in r->stage; `a` has the memory. False as real_repeat. */
+bool real_sample(struct real *r, const struct real_order *order, struct arena *a, struct err *e);
+
+/* real_facts: those of a rank in the last repetition (FACTS). real_note_digest: compare the answer
+ * of that repetition with the first one's. real_lost: the error of a process that does not answer,
+ * false. */
+const int64_t *real_facts(const struct real *r, int rank);
+void real_note_digest(struct real *r, bool first);
+bool real_lost(struct real *r, struct err *e);
 
 /* real_forget: give the kept answers back. */
 void real_forget(struct real *r);

@@ -21,6 +21,9 @@ calibrated() {
     [ "$(grep -c 'value:' my.yaml)" -eq "$(grep 'value:' my.yaml | grep -c "class: measured.*$(uname -n), 20..-..-..")" ]
     for key in flop_rate div sqrt trig bandwidth; do grep -q "$key: {value" my.yaml; done
     grep -q 'residual .* median, .* largest' my.yaml
+    # How fast the computer was meanwhile, where predict looks for it.
+    for key in flop_rate sqrt call bandwidth; do grep -q "$key: {value: .*; probe [0-9.e-]* ns; " my.yaml; done
+    [ "$(grep -c 'bandwidth: {value: .*; probe' my.yaml)" -eq 2 ] # copies, messages
     # The code of programs in one file, and the collectives; each with what it was fitted to.
     if command -v gcc >/dev/null; then
         for key in issue div root chain step load whole; do grep -q "^    $key: {value: .* cycles, .*fit to .* loops, residual" my.yaml; done
@@ -91,6 +94,67 @@ planted() {
     sqlite3 r.db 'UPDATE real_run SET oversubscribed = 0, disturbed = 8'
     works mimdsim predict "${scenario[@]}" -m paragon
     stdout_says 'not counted: disturbed'
+}
+
+# on_mine OPTION...: predictions for the planted run by a Paragon of which a file says how fast it was when it was measured.
+on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
+
+@test "predict tells at which condition a run was made, and what the machine predicts there" {
+    needs mpich
+    planted
+    # Five bursts of four repetitions, while operations took twice as long as at calibration; as a Paragon of half the rates.
+    printf '%s\n' 'schema_version: 1' 'base: paragon' 'title: Mine' 'node:' \
+        '  flop_rate: {value: 7 Mflop/s, class: measured, source: "made up; probe 1 ns; here"}' \
+        '  call: {value: 0.4 us, class: measured, source: "made up; probe 1 ns; here"}' >mine.yaml
+    works mimdsim run "${scenario[@]}" -m ./mine.yaml -q --set machine.node.flop_rate='3.5 Mflop/s' \
+        --set machine.node.div='76 cycles' --set machine.node.trig='500 cycles' --set machine.node.call='0.8 us'
+    sqlite3 r.db "UPDATE real_run SET median_s = (SELECT makespan_ps * 1e-12 FROM run WHERE machine = 'mine'), samples = 20,
+            text = '{\"bursts\":[4,4,4,4,4],\"multiply_add\":[2,2,2,2,2,2,2,2,2,2],\"call\":[2,2,2,2,2,2,2,2,2,2],
+                \"chain\":[1,1,1,1,1,1,1,1,1,1]}';
+        DELETE FROM real_sample;
+        WITH RECURSIVE i(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM i WHERE k < 19)
+            INSERT INTO real_sample SELECT real_id, k, median_s, 0 FROM real_run, i"
+    on_mine
+    stdout_says 'slower error_at_%'
+    stdout_says 'error of 1: median '
+    stdout_says "error at the condition of each run (the machine's prices times what operations took there"
+    stdout_says 'of 1: median 0.0 %, largest 0.0 %'
+    on_mine --json
+    json_is_valid
+    json_is '$[0].bursts' 5
+    json_is '$[0].steady_bursts' 5
+    [ "$(sqlite3 :memory: "SELECT abs(json_extract('$output', '\$[0].error_at_condition')) < 1e-6,
+        json_extract('$output', '\$[0].error') < -0.3, json_extract('$output', '\$[0].slower') BETWEEN 1.4 AND 2")" = '1|1|1' ]
+    # The computer became another one during three of the five bursts: shown, and not counted.
+    sqlite3 r.db "UPDATE real_run SET text = replace(text, 'add\":[2,2,2,2,2,2', 'add\":[2,3,2,3,2,3')"
+    on_mine
+    stdout_says "not counted: the computer's speed changed"
+    [[ $output != *'error of'* ]]
+    # Of a row that says nothing of it the error is as before; so it is with a file that does not.
+    sqlite3 r.db "UPDATE real_run SET text = '{\"bursts\": 5, \"call\": \"[\", \"chain\": [[], null, \"x\"], \"copy\": [-1e999'"
+    on_mine
+    stdout_says 'error of 1: median '
+    [[ $output != *'at the condition'* ]]
+    sqlite3 r.db "UPDATE real_run SET text = text || ']}'" # now it is JSON
+    on_mine --json
+    json_is '$[0].bursts' 0
+    json_is '$[0].counted' 1
+    sqlite3 r.db "UPDATE real_run SET text = '{\"bursts\":[20],\"multiply_add\":[2,2],\"call\":[2,2],\"chain\":[1,1]}'"
+    sed -i 's/; probe 1 ns//' mine.yaml
+    on_mine
+    stderr_says 'the machine file does not say how fast the computer was when it was calibrated'
+    [[ $output != *'at the condition'* ]]
+}
+
+@test "a real run notes how fast the computer was before and after each of its bursts" {
+    needs mpich
+    works start mpich 2 "$MIMDSIM" run speedup-t3e --set ranks=2 --set n=16 --set kernel=inverse --backend mpi --samples 9 \
+        --limit 2 -o r.db -q
+    # Three bursts, in order with the samples; a look on each side of each, in ns.
+    sql_is r.db "SELECT json_array_length(text, '\$.bursts') BETWEEN 1 AND 3,
+        (SELECT sum(value) FROM json_each(text, '\$.bursts')) = samples,
+        (SELECT count(*) FROM json_each(text) AS j, json_each(j.value) AS l WHERE j.key <> 'bursts' AND l.value > 0)
+            = 10 * json_array_length(text, '\$.bursts') FROM real_run" '1|1|1'
 }
 
 @test "predict tells which machine it is, and takes no shipped one unless it is named" {
