@@ -103,7 +103,8 @@ static int booksim_mesh_next(const struct routing *r, struct route *p,
 /* Torus: channels 0 and 1 by dimension order with the ring's class; channel 3 without, in the
  * lowest dimension alone (as above), and downwards where both ways are equal. On the escape the
  * class is kept in its dimension; from channel 3 it is chosen anew, and of equal ways one by
- * chance. */
+ * chance. Channel 3 is given to packets behind others, who cannot turn to the escape: a ring of
+ * four can lock up (docs/network.md). */
 static int booksim_torus_next(const struct routing *r, struct route *p,
                               const struct routing_view *view, struct route_option *option)
 {

@@ -199,7 +199,11 @@ static void check_free(const struct routing *r, struct arena *a)
         assert_true(may_deadlock(r, 0, false, a));
         return;
     }
-    if (may_deadlock(r, r->escape, false, a))
+    /* Its rule for tori has an escape and shares FIFOs: see below. */
+    if (r->rule == ROUTING_BOOKSIM_MIN_ADAPT && family == TOPOLOGY_TORUS) return;
+    /* An escape is for packets at the front of a FIFO. Where several share one, those behind cannot
+     * turn to it, and all channels must be free of cycles. */
+    if (may_deadlock(r, r->fits ? r->escape : 0, false, a))
         fail_msg("%s on %s can deadlock", routing_rule_name(r->rule),
                  topology_family_name(r->topology->spec->family));
 }
@@ -237,6 +241,11 @@ static void rules_without_classes_can_deadlock(void **state)
     assert_true(may_deadlock(routing_create(mesh, ROUTING_XY_YX, 2, a, &e), 0, true, a));
     assert_true(may_deadlock(routing_create(mesh, ROUTING_VALIANT, 2, a, &e), 0, true, a));
     assert_true(may_deadlock(routing_create(cube, ROUTING_ADAPTIVE, 2, a, &e), 0, true, a));
+    /* Channel 3 of BookSim's torus rule has no classes: the escape would do, were it unshared. */
+    const struct topology_spec four = {.family = TOPOLOGY_TORUS, .ndim = 1, .dims = {4}, ONE};
+    r = routing_create(make(&four, a), ROUTING_BOOKSIM_MIN_ADAPT, 4, a, &e);
+    assert_false(may_deadlock(r, r->escape, false, a));
+    assert_true(!r->fits && may_deadlock(r, 0, false, a));
     arena_destroy(a);
 }
 

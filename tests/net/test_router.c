@@ -216,6 +216,38 @@ static void a_deadlock_is_named(void **state)
     assert_int_equal(r.arrived, 5);
 }
 
+/* A ring of four whose FIFOs hold the tail of one packet and the head of the next: BookSim's rule
+ * for tori lets nobody out who stands behind another. The program's own gives a channel only to a
+ * packet that fits. */
+static void an_escape_needs_packets_that_fit(void **state)
+{
+    (void)state;
+    enum { MESSAGES = 2000 };
+    const struct topology_spec ring = {.family = TOPOLOGY_TORUS, .ndim = 1, .dims = {4}, ONE};
+    struct arena *a = arena_create();
+    struct random r = random_make(8, 1, 2);
+    struct traffic q = {.nmessage = MESSAGES,
+                        .src = TAKE(a, MESSAGES, int),
+                        .dst = TAKE(a, MESSAGES, int),
+                        .bytes = TAKE(a, MESSAGES, int64_t),
+                        .time = TAKE(a, MESSAGES, sim_ps)};
+    for (int m = 0; m < MESSAGES; m++) {
+        q.src[m] = (int)random_below(&r, 4);
+        q.dst[m] = (q.src[m] + 1 + (int)random_below(&r, 2)) % 4;
+        q.bytes[m] = 16 * (int64_t)(1 + random_below(&r, 6));
+    }
+    sim_ps *arrival = TAKE(a, MESSAGES, sim_ps);
+    struct machine_spec shared = machine(&ring, ROUTING_BOOKSIM_MIN_ADAPT, LEVEL_FLIT, 4),
+                        fitting = machine(&ring, ROUTING_ADAPTIVE, LEVEL_FLIT, 4);
+    struct traffic_result x;
+    struct err e;
+    assert_true(play(&shared, &q, arrival, &x, &e));
+    assert_true(x.deadlock && x.arrived < MESSAGES);
+    assert_true(play(&fitting, &q, arrival, &x, &e));
+    assert_true(!x.deadlock && x.arrived == MESSAGES);
+    arena_destroy(a);
+}
+
 /* What adaptive rules are for: in a pattern that crowds one link they are far faster. */
 static void adaptive_rules_go_around(void **state)
 {
@@ -299,6 +331,7 @@ int main(void)
         cmocka_unit_test(cables_add_their_latency),
         cmocka_unit_test(nothing_is_lost_at_saturation),
         cmocka_unit_test(a_deadlock_is_named),
+        cmocka_unit_test(an_escape_needs_packets_that_fit),
         cmocka_unit_test(adaptive_rules_go_around),
         cmocka_unit_test(more_rounds_give_more),
         cmocka_unit_test(what_cannot_run_is_refused),
