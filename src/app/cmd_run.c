@@ -314,7 +314,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     const int todo = say_skipped(c, p, &asked->part, skip);
     bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
     /* a launcher has its own way of ending a job */
-    interrupt_begin(&k->interrupt, c->database, job->on ? 0 : todo);
+    if (k->whole && todo > 0 && !run_loads_code(k->run)) interrupt_begin_single(&k->interrupt);
+    else interrupt_begin(&k->interrupt, c->database, job->on ? 0 : todo);
     if (ok && k->spread)
         ok = job_spread(job, p, run, k->order, skip, begin_spread, keep_result, k, e);
     else if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);

@@ -271,9 +271,8 @@ static bool is_code(const struct program_spec *p)
     return p->kind == PROGRAM_KERNEL || p->kind == PROGRAM_MPI;
 }
 
-/* Whether a run executes code of people, its own or of a job beside it, which may crash, loop for
- * ever, or leave memory behind. */
-static bool loads_code(const struct run_spec *spec)
+/* Such code may crash, loop for ever, or leave memory behind. */
+bool run_loads_code(const struct run_spec *spec)
 {
     bool loads = is_code(&spec->program);
     for (int i = 0; spec->jobs && i < spec->jobs->n && !loads; i++)
@@ -328,7 +327,7 @@ static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
     if (!receive_answer(w->answers, c->slot[index], c->arena[index])) {
         *c->slot[index] = (struct answer){.index = index};
         if (!replace_worker(c, w, c->slot[index], e)) return false;
-    } else if (loads_code(&c->spec[index])) {
+    } else if (run_loads_code(&c->spec[index])) {
         /* What such a run has left in the process goes with the process. */
         end_worker(w);
         if (!start_worker(c, (int)(w - c->worker), e)) return false;
@@ -483,7 +482,7 @@ static bool run_all(struct campaign *c, int workers, bool quiet, struct err *e)
     for (int i = 0; i < c->nspec; i++) {
         if (c->skip && c->skip[i]) continue;
         c->ntodo++;
-        if (loads_code(&c->spec[i])) apart = true;
+        if (run_loads_code(&c->spec[i])) apart = true;
     }
     /* Everything is stored already: no process is started. */
     if (c->ntodo == 0) return true;

@@ -8,8 +8,10 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+enum { INTERRUPTS = 2 }; /* SIGINT and SIGTERM */
+
 /* A thread that waits for SIGINT and SIGTERM while the process works; workers that are forked
- * meanwhile leave these signals to it. */
+ * meanwhile leave these signals to it. Or, of a single run, a handler of them. */
 struct interrupt {
     const char *database; /* NULL: not known here */
     int todo;             /* runs that are to be made */
@@ -19,6 +21,8 @@ struct interrupt {
     sem_t waits;     /* posted by the thread, which takes no memory from then on */
     sigset_t wanted; /* signals that it waits for */
     sigset_t before; /* signals that were blocked */
+    bool handled;    /* by a handler */
+    struct sigaction action[INTERRUPTS]; /* what was to be done of them */
 };
 
 /* interrupt_begin: from now on such a signal ends the process with a line on stderr, after which
@@ -27,6 +31,10 @@ struct interrupt {
  * Nothing happens where nothing is to be done, and where one has begun already: whoever began
  * first knows most. */
 void interrupt_begin(struct interrupt *x, const char *database, int todo);
+
+/* interrupt_begin_single: the same for one run that this process makes itself, without workers: the
+ * line does not tell how many of them were made. */
+void interrupt_begin_single(struct interrupt *x);
 
 /* interrupt_end: signals act as before. */
 void interrupt_end(struct interrupt *x);

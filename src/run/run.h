@@ -96,6 +96,9 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
                   const bool *skip, int workers, bool quiet, run_done_fn *done, void *context,
                   struct err *e);
 
+/* run_loads_code: whether a run executes code of people's own, or one beside which it runs. */
+bool run_loads_code(const struct run_spec *spec);
+
 /* run_campaign_again: a quiet run_campaign of all specs that begins, in every worker, with what
  * `cache` has: for one campaign after the other of the same tasks. */
 bool run_campaign_again(const struct run_spec *spec, int nspec, int workers,

@@ -242,17 +242,22 @@ static void a_refusal_keeps_its_reason(void **state)
 /* ---- Ctrl-C ---- */
 
 enum how { HEARD, ENDED, NOTHING_TO_DO, SECOND, IGNORED };
+enum { SINGLE = 8 /* beside one of these: of a single run */ };
 
 /* What the child does until it is ended; it lives on, with status 7, where the signal is ignored.
  */
 static _Noreturn void live(int number, enum how how)
 {
     struct interrupt x, second;
+    const bool single = how & SINGLE;
+    how &= ~SINGLE;
     signal(number, how == IGNORED ? SIG_IGN : SIG_DFL);
-    interrupt_begin(&x, "runs.db", how == NOTHING_TO_DO ? 0 : 5);
+    if (single) interrupt_begin_single(&x);
+    else interrupt_begin(&x, "runs.db", how == NOTHING_TO_DO ? 0 : 5);
     atomic_store(&x.stored, 3);
     if (how == ENDED) interrupt_end(&x);
     if (how == SECOND) interrupt_begin(&second, NULL, 9);
+    if (how == SECOND && second.on) _exit(8);
     /* to the process: a signal of one thread alone would wait for ever */
     kill(getpid(), number);
     if (how != IGNORED) sleep(20);
@@ -297,6 +302,30 @@ static void whoever_ends_a_campaign_is_told_that_rows_stay(void **state)
     }
 }
 
+static void whoever_ends_a_single_run_is_told_once(void **state)
+{
+    (void)state;
+    static const int numbers[] = {SIGINT, SIGTERM};
+    static const char line[] = "\nmimdsim: interrupted: what is stored stays, and the same command "
+                               "goes on from there\n";
+    char said[400];
+    for (int i = 0; i < 2; i++) {
+        const int number = numbers[i];
+        int status = child(number, SINGLE | HEARD, said, sizeof said);
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+        assert_string_equal(said, line);
+        status = child(number, SINGLE | SECOND, said, sizeof said); /* no second line */
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+        assert_string_equal(said, line);
+        status = child(number, SINGLE | ENDED, said, sizeof said);
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+        assert_string_equal(said, "");
+        status = child(number, SINGLE | IGNORED, said, sizeof said);
+        assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+        assert_string_equal(said, "");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -306,6 +335,7 @@ int main(void)
         cmocka_unit_test(dealt_runs_are_made_each_once),
         cmocka_unit_test(a_refusal_keeps_its_reason),
         cmocka_unit_test(whoever_ends_a_campaign_is_told_that_rows_stay),
+        cmocka_unit_test(whoever_ends_a_single_run_is_told_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
