@@ -1,6 +1,7 @@
 /* lanes_types.c - which widths of lanes this host has. */
 #include <stddef.h>
 
+#include "base/processor.h"
 #include "dynamics/lanes_type.h"
 
 /* Each width's files are compiled apart, for the registers that it needs (local.am). */
@@ -9,8 +10,8 @@ extern const struct lanes_type lanes_type_f64x4, lanes_type_f64x8;
 const struct lanes_type *lanes_type_of(int width)
 {
 #ifdef __x86_64__
-    if (width == 4 && __builtin_cpu_supports("avx2")) return &lanes_type_f64x4;
-    if (width == 8 && __builtin_cpu_supports("avx512f")) return &lanes_type_f64x8;
+    if (width == 4 && processor_has_avx2()) return &lanes_type_f64x4;
+    if (width == 8 && processor_has_avx512f()) return &lanes_type_f64x8;
 #else
     (void)width;
 #endif

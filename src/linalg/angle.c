@@ -11,6 +11,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/processor.h"
+
 enum { LANES = 4 };
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t masks __attribute__((vector_size(8 * LANES)));
@@ -82,7 +84,7 @@ __attribute__((target("avx2"))) static void sincos_avx2(int n, const double *res
 static sincos_fn *widest(void)
 {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2")) return sincos_avx2;
+    if (processor_has_avx2()) return sincos_avx2;
 #endif
     return sincos_usual;
 }

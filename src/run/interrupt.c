@@ -6,7 +6,7 @@
  * run.
  *
  * Of a single run there is nothing to be counted, and the sentence is a constant: a handler writes
- * it. A thread would take a twentieth of a small run's time, more where it waits for a processor. */
+ * it. A thread would take a thirtieth of a small run, and more where it waits for a processor. */
 #include "run/interrupt.h"
 
 #include <errno.h>
