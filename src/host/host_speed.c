@@ -26,9 +26,11 @@ enum {
 /* What stands in for a use of `p`: all that it points to is read and written here. */
 #define USED(p) __asm__ volatile("" ::"r"(p) : "memory")
 
-/* At a line of the cache, whatever the environment makes of the stack: products of vectors that
- * cross lines take a third longer, and no other process would tell the same. */
+/* Data and loops at a line of the cache, whatever the environment makes of the stack and the linker
+ * of the code: what crosses lines takes up to a third longer, and no other process, or the next
+ * build, would tell the same. */
 #define LINED _Alignas(64)
+#define LINED_CODE __attribute__((aligned(64)))
 
 /* --- the operations, each some thousand times: [s] of one ------------------------------------- */
 
@@ -37,7 +39,7 @@ static double since(int64_t begin) { return (double)(host_clock_ns() - begin) * 
 
 /* Products of a 6x6 matrix and a vector, as the operators of kernels are made of: what a processor
  * can issue in a cycle. */
-static double multiply_add(void)
+LINED_CODE static double multiply_add(void)
 {
     LINED double a[ROWS * ROWS];
     LINED double x[ROWS];
@@ -59,14 +61,14 @@ static double multiply_add(void)
 }
 
 /* y = R x + y, never inlined: an operator as small as those of kernels. */
-__attribute__((noinline)) static void turn(double *y, const double *r, const double *x)
+__attribute__((noinline)) LINED_CODE static void turn(double *y, const double *r, const double *x)
 {
     for (int i = 0; i < 3; i++) y[i] += r[3 * i] * x[0] + r[3 * i + 1] * x[1] + r[3 * i + 2] * x[2];
     USED(y);
 }
 
 /* From link to link of a chain, each call with what the one before has stored. */
-static double call(void)
+LINED_CODE static double call(void)
 {
     LINED double r[9] = {0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1};
     LINED double x[3 * (LINKS + 1)];
@@ -82,7 +84,7 @@ static double call(void)
 /* A scalar product, whose sum waits for each product: the clock of the processor. Five instructions
  * an element (load, load and multiply, add, advance, branch), as node_cost.c counts them where no
  * file says what one costs. */
-static double chain(void)
+LINED_CODE static double chain(void)
 {
     LINED double x[ELEMENTS];
     LINED double y[ELEMENTS];
@@ -97,7 +99,7 @@ static double chain(void)
 }
 
 /* A block to and fro, as packing copies it. */
-static double copy(void)
+LINED_CODE static double copy(void)
 {
     LINED char a[COPY_BYTES];
     LINED char b[COPY_BYTES];
