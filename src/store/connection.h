@@ -25,6 +25,8 @@
     X(SETTING_ADD, "INSERT INTO setting (key, value, number, unit) VALUES (?1, ?2, ?3, ?4)")       \
     X(SETTING_FIND, "SELECT id FROM setting WHERE key = ?1 AND value = ?2")                        \
     X(RUN_SETTINGS, "INSERT INTO run_setting SELECT ?1, value FROM json_each(?2)")                 \
+    X(FIRST_SETTINGS,                                                                              \
+      "INSERT INTO run_setting SELECT ?1, id FROM setting NOT INDEXED ORDER BY id")                \
     X(BEGIN, "BEGIN IMMEDIATE")                                                                    \
     X(COMMIT, "COMMIT")                                                                            \
     X(PROGRAM_LINE, "INSERT INTO program_line VALUES (?1, ?2, ?3, ?4, ?5)")                        \

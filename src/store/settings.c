@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "spec/setting_number.h"
 #include "store/binding.h"
+#include "store/setting_rows.h"
 
 /* The lines of the run that was put last, and their rows. */
 struct settings {
@@ -61,16 +62,12 @@ static sqlite3_stmt *start(struct store *s, enum statement which, const struct l
     return q;
 }
 
-/* The row of a setting, made when it is new. A database that nobody else sees has none before its
- * first run, so that nothing need be looked for. */
+/* The row of a setting, made when it is new. */
 static bool row_of(struct store *s, const struct line *l, int64_t *id, struct err *e)
 {
-    *id = 0;
-    if (!s->unpublished || s->had_settings) {
-        sqlite3_stmt *find = start(s, STATEMENT_SETTING_FIND, l, e);
-        if (find == NULL || !store_find_id(s, find, id, e)) return false;
-        if (*id != 0) return true;
-    }
+    sqlite3_stmt *find = start(s, STATEMENT_SETTING_FIND, l, e);
+    if (find == NULL || !store_find_id(s, find, id, e)) return false;
+    if (*id != 0) return true;
     sqlite3_stmt *add = start(s, STATEMENT_SETTING_ADD, l, e);
     if (add == NULL) return false;
     bind_number(add, l);
@@ -96,11 +93,11 @@ static const char *end_of(const char *at) { return strchrnul(at, '\n'); }
 /* Behind that. */
 static const char *next_of(const char *end) { return *end != '\0' ? end + 1 : end; }
 
-bool settings_put(struct store *s, int64_t run, const char *config, struct err *e)
+/* Line by line, those of the run before at once. */
+static bool put_changed(struct store *s, int64_t run, const char *config, struct settings *now,
+                        struct err *e)
 {
-    if (s->passing || config == NULL) return true;
     const struct settings *last = s->settings;
-    struct settings now = {.config = memory_text(config)};
     const char *before = last != NULL ? last->config : "";
     struct text list = {0};
     bool ok = true;
@@ -110,18 +107,18 @@ bool settings_put(struct store *s, int64_t run, const char *config, struct err *
         const size_t length = (size_t)(end - line);
         const bool same = (size_t)(other - before) == length && memcmp(line, before, length) == 0;
         const char *equals = memmem(line, length, " = ", 3);
-        if (n == now.capacity) {
-            now.capacity = now.capacity > 0 ? 2 * now.capacity : 256;
-            now.id = memory_resize(now.id, now.capacity, sizeof *now.id);
+        if (n == now->capacity) {
+            now->capacity = now->capacity > 0 ? 2 * now->capacity : 256;
+            now->id = memory_resize(now->id, now->capacity, sizeof *now->id);
         }
-        now.id[n] = 0;
+        now->id[n] = 0;
         /* What is no setting has no row. */
         if (equals != NULL) {
             const struct line l = {line, equals + 3, (int)(equals - line), (int)(end - equals - 3)};
-            if (same) now.id[n] = last->id[n];
-            else ok = row_of(s, &l, &now.id[n], e);
+            if (same) now->id[n] = last->id[n];
+            else ok = row_of(s, &l, &now->id[n], e);
             text_add_bytes(&list, list.length > 0 ? "," : "[", 1);
-            text_add_integer(&list, now.id[n]);
+            text_add_integer(&list, now->id[n]);
         }
         line = next_of(end);
         before = next_of(other);
@@ -131,6 +128,50 @@ bool settings_put(struct store *s, int64_t run, const char *config, struct err *
         ok = join(s, run, &list, e);
     }
     text_free(&list);
+    return ok;
+}
+
+/* All lines at once, into a table without rows. */
+static bool put_first(struct store *s, int64_t run, struct settings *now, struct err *e)
+{
+    /* Cut into its words in place. */
+    char *copy = memory_text(now->config);
+    size_t most = 1, n = 0, lines = 0;
+    for (const char *at = copy; (at = strchr(at, '\n')) != NULL; at++) most++;
+    struct setting_row *row = memory_take(most, sizeof *row);
+    now->id = memory_zeroed(most, sizeof *now->id);
+    now->capacity = most;
+    for (char *line = copy, *next; *line != '\0'; line = next, lines++) {
+        char *end = line + strcspn(line, "\n");
+        next = *end != '\0' ? end + 1 : end;
+        *end = '\0';
+        char *equals = strstr(line, " = ");
+        if (equals == NULL) continue;
+        *equals = '\0';
+        enum unit unit;
+        row[n].key = line;
+        row[n].value = equals + 3;
+        row[n].numeric = setting_number(line, row[n].value, &row[n].number, &unit);
+        row[n].unit = units_si(unit);
+        now->id[lines] = (int64_t)++n;
+    }
+    int64_t first = 0;
+    const bool ok = setting_rows_put(s, run, row, n, &first, e);
+    for (size_t i = 0; i < lines; i++)
+        if (now->id[i] != 0) now->id[i] += first - 1;
+    free(row);
+    free(copy);
+    return ok;
+}
+
+/* A database that nobody else sees has no settings before its first run, so that none need be
+ * looked for. */
+bool settings_put(struct store *s, int64_t run, const char *config, struct err *e)
+{
+    if (s->passing || config == NULL) return true;
+    struct settings now = {.config = memory_text(config)};
+    const bool ok = s->unpublished && !s->had_settings ? put_first(s, run, &now, e)
+                                                       : put_changed(s, run, config, &now, e);
     s->had_settings = true;
     settings_forget(s);
     s->settings = memory_zeroed(1, sizeof *s->settings);
