@@ -18,6 +18,13 @@ load helper
     fails_with 1 mimdsim run speedup-t3e --set n=4,2048,8 --set level=loggp -o swept1.db --quiet
     stderr_says 'mimdsim: 1 of 1 runs failed'
     sql_is swept1.db 'SELECT count(*) FROM run' 3
+    # the table's speedups are those of the view, which has none of a run that failed
+    fails_with 1 mimdsim run speedup-t3e --set n=4,2048,8 --set level=loggp -o swept1.db --csv \
+        --columns speedup_vs_fastest_serial,speedup_vs_itself
+    [ "$(tr -d '\r' <<<"$output" | awk -F, 'NR > 1 {printf "%.10g %.10g\n", $1, $2}')" = "$(sqlite3 swept1.db "SELECT
+        printf('%.10g %.10g', (SELECT speedup FROM v_speedup WHERE run_id = r.id AND baseline = 'fastest serial'),
+        (SELECT speedup FROM v_speedup WHERE run_id = r.id AND baseline = 'parallel code on one processor'))
+        FROM run r ORDER BY CASE n WHEN 2048 THEN 6 ELSE n END")" ]
 }
 
 @test "a plan of no other points is refused as before, and nothing is made" {
