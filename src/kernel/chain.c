@@ -148,8 +148,10 @@ void chain_place(struct chain *ch)
 }
 
 /* compose_block: C = X_lo o .. o X_{hi-1}, the transform from this block's end to the end of the
- * block before (physics 3.3): 63 flops for each body but the first, once per configuration. */
-static void compose_block(struct chain *ch, real *C)
+ * block before (physics 3.3): 63 flops for each body but the first, once per configuration. Not
+ * inlined: no matrix may lie in the frame of whoever waits for messages, once on each rank's
+ * stack. */
+static __attribute__((noinline)) void compose_block(struct chain *ch, real *C)
 {
     const int size = ch->scan.size;
     real next[SQUARE];
@@ -366,6 +368,14 @@ void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
     dense_product(SPACE, SPACE, SPACE, product, shift, inertia, w);
 }
 
+/* dense_load: I a of own body i by full matrices. Not inlined, as compose_block. */
+static __attribute__((noinline)) void dense_load(struct chain *ch, int i, real *inertial)
+{
+    real inertia[SQUARE];
+    chain_shifted_inertia(&ch->shared->body[i], inertia, &ch->work);
+    dense_product(SPACE, 1, SPACE, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
+}
+
 /* load: f = I a + P - Fext of own body i, (2.3) and (2.4) of physics without the children's
  * part. */
 static void load(struct chain *ch, int i)
@@ -376,9 +386,7 @@ static void load(struct chain *ch, int i)
     const bool more = !ch->job->omit.velocity || ch->job->state->fext;
     if (more) chain_gyro(ch, i, f);
     if (ch->dense) {
-        real inertia[SQUARE];
-        chain_shifted_inertia(b, inertia, &ch->work);
-        dense_product(SPACE, 1, SPACE, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
+        dense_load(ch, i, inertial);
     } else {
         body_force(b, chain_at(ch, ch->a, i), inertial);
         ch->work.flop += BODY_FORCE_FLOP;

@@ -15,6 +15,11 @@ static const char *const stage_name[] = {"Pre-processing", "NE[1]",  "NE[2]", "N
                                          "CFA[1]",         "CFA[2]", "CFA[3]"};
 enum { INVERSE_STAGES = 4, FORWARD_STAGES = 7 };
 
+/* INVERSE_DEPTH: of the calls of inverse dynamics in double precision, with those of a send and a
+ * wait at level link, which are 64 bytes deeper than at loggp [B]. With a body on each of 2^20
+ * ranks that leaves 48 bytes of a page. */
+enum { INVERSE_DEPTH = REAL_BITS == 64 ? 1312 : 0 };
+
 /* inverse's workspaces: one rank's share of the model, accelerations given, joint forces made. */
 struct chain_inverse {
     struct chain chain;
@@ -275,7 +280,8 @@ const struct kernel_type inverse_kernel = {
              .stage_name = stage_name,
              .workspace_bytes = inverse_bytes,
              .largest_message = largest_message,
-             .run = inverse_run},
+             .run = inverse_run,
+             .depth = INVERSE_DEPTH},
     .accepts = accepts_inverse,
     .prepare = prepare,
     .estimate = estimate_inverse,

@@ -9,7 +9,7 @@
 static inline void publish_reals(struct comm *c, int output, int64_t first, int64_t n,
                                  const real *x)
 {
-    enum { CHUNK = 64 };
+    enum { CHUNK = 16 }; /* on a stack that is meant to stay within a page */
     double rounded[CHUNK];
     if (!comm_wanted(c, output)) return;
     for (int64_t at = 0; at < n; at += CHUNK) {

@@ -35,12 +35,12 @@ struct rank_program {
     size_t (*workspace_bytes)(const void *job, int rank);
     /* largest_message: no message of this job is larger [B]; -1: not known. NULL: not known. */
     int64_t (*largest_message)(const void *job);
-
     /* run: the program of one rank. */
     void (*run)(struct comm *c, const void *job, void *workspace);
     /* as in world_load; false for built-in programs */
     bool timed, no_synchronous, foreign, leftovers;
     int64_t stack_bytes;            /* of each rank, 0: as for built-in programs */
+    int depth; /* of the calls of run, as measured [B]; 0: not known. Acts on memory alone */
 };
 
 /* One run of a program, from open to check. The caller fills the first part, open and prepare the

@@ -21,16 +21,45 @@ struct launch {
     const struct rank_program *rank; /* its functions */
     const void *job; /* what all ranks read, and none writes */
     struct tape *tape; /* NULL: none */
-    char **workspace; /* (nrank) */
+    char **workspace; /* (nrank); NULL: on the ranks' stacks */
 };
+
+/* A page of a stack is touched anyway, and what a rank works in may be the rest of it. Not inlined:
+ * what it takes lies above the frames of the program and below nothing but the rank's first. */
+static __attribute__((noinline)) void run_on_stack(const struct launch *l, struct comm *c)
+{
+    const size_t bytes = l->rank->workspace_bytes(l->job, comm_rank(c));
+    char *workspace = __builtin_alloca(bytes);
+    memset(workspace, 0, bytes);
+    l->rank->run(c, l->job, workspace);
+}
 
 /* What each virtual processor executes: the program's run function, with its own workspace. */
 static void program(struct comm *c, void *context)
 {
     struct launch *l = context;
+    if (!l->workspace) {
+        run_on_stack(l, c);
+        return;
+    }
     char *workspace = l->workspace[comm_rank(c)];
     if (l->tape) tape_rank(l->tape, c, l->rank, l->job, workspace);
     else l->rank->run(c, l->job, workspace);
+}
+
+/* Whether stack and workspace of every rank share a page: what fiber.c saves above the first frame,
+ * and frames of this file, are part of the depth. A stack that somebody wants smaller than usual is
+ * left to the program. */
+static bool shares_page(const struct program_run *r, const struct world_load *load)
+{
+    enum { PAGE = 4096, LEAST_STACK = 2 * PAGE };
+    int first, end;
+    if (r->rank->depth == 0 || (load->stack_bytes > 0 && load->stack_bytes < LEAST_STACK))
+        return false;
+    world_part(load, &first, &end);
+    for (int i = first; i < end; i++)
+        if (r->rank->workspace_bytes(r->job, i) + (size_t)r->rank->depth > PAGE) return false;
+    return true;
 }
 
 /* Taken one by one: all of it will be touched, so the arena may use large pages. What the computer
@@ -143,8 +172,9 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     /* What processes cannot share, the first one does. */
     if (ordered && r->order.hosts && r->order.hosts->rank > 0) return true;
     if (!ordered) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
-    struct launch l = {r->rank, r->job, tape, make_workspaces(r, &load, tape, scratch, e)};
-    if (!l.workspace) return false;
+    load.fills = !tape && shares_page(r, &load);
+    struct launch l = {.rank = r->rank, .job = r->job, .tape = tape};
+    if (!load.fills && !(l.workspace = make_workspaces(r, &load, tape, scratch, e))) return false;
     load.context = &l;
     if (tape && load.threads <= 1 && !load.hosts) load.stacks = tape_stacks(tape);
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
@@ -160,8 +190,9 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.hosts = NULL;
     load.threads = 1;
     l.tape = NULL;
-    l.workspace = make_workspaces(r, &load, NULL, scratch, e);
-    return l.workspace && world_run(m, &load, record, seed, a, out, e);
+    load.fills = shares_page(r, &load);
+    l.workspace = load.fills ? NULL : make_workspaces(r, &load, NULL, scratch, e);
+    return (load.fills || l.workspace) && world_run(m, &load, record, seed, a, out, e);
 }
 
 bool launch_jobs(const struct launch_job *job, int n, const struct machine_spec *m, uint64_t seed,

@@ -71,6 +71,7 @@ struct fiber_pool {
     size_t stack_bytes, page;
     int n, nguard;
     int room; /* stacks that are mapped, n of them in use */
+    int colours; /* of tops: COLOURS, or 1 */
 };
 
 /* The address sanitizer keeps a shadow of the current stack. Each switch is announced before, with
@@ -155,6 +156,7 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     p->stack_bytes = stack;
     p->page = page;
     p->n = p->room = n;
+    p->colours = COLOURS;
     /* Where not all can be had, fiber_pool_stack_peak looks at the spare pages instead. */
     p->nguard = guard_pages(base, stride, page, n);
     return p;
@@ -169,6 +171,8 @@ bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes)
     p->n = n;
     return true;
 }
+
+void fiber_pool_fill(struct fiber_pool *p) { p->colours = 1; }
 
 void fiber_pool_destroy(struct fiber_pool *p)
 {
@@ -257,7 +261,7 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
     f->stack = p->base + p->stride * (size_t)i + p->page;
     /* Stacks lie a whole number of pages apart, so that their tops would compete for the same sets
      * of the first-level cache. Shifted tops keep the hot lines of different fibers apart. */
-    char *top = f->stack + p->stack_bytes - (size_t)(i % COLOURS) * COLOUR_BYTES;
+    char *top = f->stack + p->stack_bytes - (size_t)(i % p->colours) * COLOUR_BYTES;
     prepare(f, top);
     return f;
 }

@@ -25,6 +25,11 @@ void fiber_pool_destroy(struct fiber_pool *p);
  * no room for them, or stacks of another size: nothing has changed then. */
 bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes);
 
+/* fiber_pool_fill: the fibers started from now on fill the first page of their stacks, each a
+ * different part of it at a time: all stacks begin at their tops, and none is shifted to keep hot
+ * lines of different fibers apart, which would cost a second page. */
+void fiber_pool_fill(struct fiber_pool *p);
+
 /* fiber_start: make fiber number i (0 .. n-1) ready to run fn(argument) at its first
  * fiber_enter. */
 struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argument);

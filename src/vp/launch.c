@@ -5,6 +5,17 @@
 #include "vp/vp.h"
 #include "vp/windows.h"
 
+/* Not inlined, so that the text takes no room on the stack of a rank that sends. A message that is
+ * not sent does not matter any more: the run has ended. */
+static __attribute__((noinline)) bool takes(const struct world *w, const struct message *m,
+                                            const struct vp *from)
+{
+    char why[256];
+    if (net_takes(w->net, m->net.bytes, why, sizeof why)) return true;
+    vp_record_failure((struct vp *)from, NULL, 0, why);
+    return false;
+}
+
 /* The network knows nodes; ranks are needed for the record of what binds alone. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
 {
@@ -13,12 +24,9 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
     m->net.dst = w->placement.node[to - w->vp];
     m->net.processor = from->processor;
     if (!w->shared_channel || m->net.src != m->net.dst) {
-        char why[256];
-        /* A message that is not sent does not matter any more: the run has ended. */
-        const bool takes = net_takes(w->net, m->net.bytes, why, sizeof why);
-        if (takes && w->windows) windows_post(w, m);
-        else if (takes) net_send(w->net, &m->net);
-        else vp_record_failure((struct vp *)from, NULL, 0, why);
+        if (!takes(w, m, from)) return;
+        if (w->windows) windows_post(w, m);
+        else net_send(w->net, &m->net);
         return;
     }
     /* Memory that two processors share (docs/network.md): latency and bytes at its

@@ -276,6 +276,7 @@ static bool build(struct world *w, struct err *e)
     if (w->record->balance)
         w->balanced = TAKE(w->scratch, size_product(w->nrank, w->nstage + 1), int64_t);
     w->fibers = stacks_take(w, e);
+    if (w->fibers && w->load->fills) fiber_pool_fill(w->fibers);
     return w->fibers != NULL;
 }
 

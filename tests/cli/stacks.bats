@@ -87,3 +87,13 @@ C
         stderr_says "MIMDSIM_STACK is '$bad'"
     done
 }
+
+@test "a rank of inverse dynamics works in the page of its stack: 12,288 more take less than 7,800 bytes each" {
+    sanitized && skip 'sanitizers make stacks deeper'
+    for dims in '16, 16, 16' '32, 32, 16'; do
+        works mimdsim run speedup-t3e -o memory.db --quiet --set level=loggp --set kernel=inverse --jobs 1 --threads 1 \
+            --set n=$((${dims//, / * })) --set machine.topology.dims="[$dims]"
+    done
+    sql memory.db "SELECT P, host_peak_bytes FROM run"
+    sql_is memory.db "SELECT (max(host_peak_bytes) - min(host_peak_bytes)) / 12288 < 7800 FROM run" 1
+}
