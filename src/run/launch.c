@@ -28,7 +28,7 @@ struct launch {
  * what it takes lies above the frames of the program and below nothing but the rank's first. */
 static __attribute__((noinline)) void run_on_stack(const struct launch *l, struct comm *c)
 {
-    const size_t bytes = l->rank->workspace_bytes(l->job, comm_rank(c));
+    const size_t bytes = l->rank->workspace_bytes(l->job, comm_rank(c)); /* at most a page */
     char *workspace = __builtin_alloca(bytes);
     memset(workspace, 0, bytes);
     l->rank->run(c, l->job, workspace);
