@@ -114,3 +114,23 @@ save_next() {
         [ -e "$name" ] || [ -e "$name.c" ] || { echo "$name"; return 1; }
     done
 }
+
+# settings_named: the settings that documents write in full in backquotes, one a line, and those of the table of symbols in
+# docs/network.md.
+settings_named() {
+    grep -ohE '`(machine\.)?(network|node|software|topology|placement|noise|price|power|floor|model|kernel|record)\.[a-z0-9_.]*[a-z0-9_]`' \
+        README.md docs/*.md | tr -d '`' | grep -vE '\.(c|h|sql|yaml|md)$'
+    awk -F'|' '/^\| symbol \| setting \(`machine.network.`\)/ { on = 1; next } !/^\|/ { on = 0 } on && /`/ { print $3 }' docs/network.md |
+        grep -oE '`[a-z_.]+`' | tr -d '`' | sed 's/^/network./'
+}
+
+@test "settings that documents name exist" {
+    works mimdsim keys
+    printf '%s\n' "$output" >keys
+    (cd "$MIMDSIM_SRCDIR" && settings_named) | sort -u >named
+    [ "$(wc -l <named)" -gt 60 ]
+    # in full, or a group of settings
+    while read -r name; do
+        grep -qE "(^|machine\.)${name//./\\.}([ .]|$)" keys || { echo "$name"; return 1; }
+    done <named
+}
