@@ -169,6 +169,7 @@ bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes)
     sanitizer_fresh(p->base, p->stride * (size_t)p->n);
     memset(p->fiber, 0, (size_t)p->n * sizeof *p->fiber);
     p->n = n;
+    p->colours = COLOURS;
     return true;
 }
 

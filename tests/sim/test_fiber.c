@@ -196,6 +196,33 @@ static void a_pool_is_used_again(void **state)
     fiber_pool_destroy(p);
 }
 
+/* Where in its page a fiber's first frame lies. */
+static void note_place(void *argument)
+{
+    char here;
+    *(uintptr_t *)argument = (uintptr_t)&here % 4096;
+}
+
+/* Tops are shifted against each other, but for those that fill a page; a pool that is used again
+ * begins anew. */
+static void filled_pages_have_no_shifted_tops(void **state)
+{
+    (void)state;
+    struct err e;
+    err_clear(&e);
+    struct fiber_pool *p = fiber_pool_create(2, 64 * 1024, &e);
+    assert_non_null(p);
+    for (int k = 0; k < 3; k++) {
+        uintptr_t place[2];
+        if (k > 0) assert_true(fiber_pool_again(p, 2, 64 * 1024));
+        if (k == 1) fiber_pool_fill(p);
+        for (int i = 0; i < 2; i++)
+            assert_false(fiber_enter(fiber_start(p, i, note_place, &place[i])));
+        assert_int_equal(place[0] == place[1], k == 1);
+    }
+    fiber_pool_destroy(p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -205,6 +232,7 @@ int main(void)
         cmocka_unit_test(an_overflow_of_one_of_very_many_is_seen),
         cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
         cmocka_unit_test(a_pool_is_used_again),
+        cmocka_unit_test(filled_pages_have_no_shifted_tops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
