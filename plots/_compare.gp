@@ -15,7 +15,7 @@ unit = most >= 1 ? "s" : (most >= 1e-3 ? "ms" : "µs")
 shares = most > 30*least
 headline = "Comparison of ".headline
 provenance = errors eq "" ? provenance : errors."; ".provenance
-subline = shown < points ? sprintf("%d of the %d points that all have", shown, points) : (points == 1 ? "" : sprintf("%d points that all have", points))
+subline = shown < points ? sprintf("%d of the %d points in common", shown, points) : (points == 1 ? "" : sprintf("%d points in common", points))
 wide = 900.0
 bar_high = 17.0; group_high = bar_high*sides + 24
 lines_high = lines ? 330.0 : 0
@@ -70,7 +70,7 @@ do for [format in formats] {
     plot for [k=1:4] data using (bar(from(k))):(y_of(column("place"), column("side"))):(from(k)):(upto(k)):(y_of(column("place"), column("side")) - thick):(y_of(column("place"), column("side")) + thick) \
             with boxxyerror fillcolor rgb fill[k] linewidth 0.4 notitle, \
          for [k=1:4] keyentry with boxes fillcolor rgb fill[k] title part_name[k], \
-         data using (bar(part(column("makespan_s")))):(y_of(column("place"), column("side"))):(sprintf("%.4g %s", column("makespan_s")*scale, unit).(column("side") > 1 ? sprintf("  (%.3g)", column("ratio")) : "")) \
+         data using (bar(part(column("makespan_s")))):(y_of(column("place"), column("side"))):(sprintf("%.4g %s", column("makespan_s")*scale, unit).(column("side") > 1 ? sprintf("  (%.3g×)", column("ratio")) : "")) \
             with labels left offset 0.6,0 noenhanced font tiny notitle, \
          data using (bar(0)):(y_of(column("place"), column("side"))):(strcol("name")) with labels right offset -0.6,0 noenhanced font tiny notitle, \
          data using (column("bar") > 0 && column("side") == 1 ? 0 : NaN):(column("place") - 0.5 + 11/group_high):(strcol("point")) \

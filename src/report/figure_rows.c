@@ -28,8 +28,10 @@ static bool add_machine(void *context, int ncolumn, const char *const *name,
         m->more_runs += (int)strtol(value[1], NULL, 10);
         return true;
     }
-    text_add(m->out, "%s", m->n == 1 ? m->before : ", ");
-    if (m->counts) text_add(m->out, "%s on ", value[1]);
+    /* Names have commas of their own. */
+    text_add(m->out, "%s", m->n == 1 ? m->before : m->counts ? "; " : ", ");
+    const char *runs = m->n > 1 ? "" : strcmp(value[1], "1") == 0 ? " run" : " runs";
+    if (m->counts) text_add(m->out, "%s%s on ", value[1], runs);
     text_add(m->out, "%s", value[0]);
     return true;
 }
@@ -59,7 +61,7 @@ bool figure_rows(struct store *s, const char *run_ids, struct text *out, struct 
         " GROUP BY l.name";
     const char *const ids[] = {run_ids};
     struct text lost = {0}, other = {0}, names = {0};
-    struct machines a = {.out = &lost, .before = "; left out: runs ", .counts = true},
+    struct machines a = {.out = &lost, .before = "; left out: ", .counts = true},
                     b = {.out = &names, .before = ""}, c = {.out = &other, .before = ""};
     bool ok = store_select(s, left, 1, ids, add_machine, &a, e) &&
               store_select(s, changed, 1, ids, add_machine, &c, e) &&

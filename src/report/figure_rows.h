@@ -6,7 +6,7 @@
 #include "store/store.h"
 
 /* figure_rows: a clause about a figure that shows the runs of the JSON array `run_ids`, appended:
- * "t3e-300; left out: runs 14 on t3e-300, hop_latency 60 us". Left out are runs of the same
+ * "t3e-300; left out: 14 runs on t3e-300, hop_latency 60 us". Left out are runs of the same
  * programs on machines that are not shown; where there are none and all machines are as shipped,
  * nothing is appended. Returns false as store_select. */
 bool figure_rows(struct store *s, const char *run_ids, struct text *out, struct err *e);

@@ -96,7 +96,7 @@ shown() {
 
 @test "a foot that is longer than the page goes on in further lines, none of them longer, and nothing is lost" {
     long='error of level not known, machine not known, arithmetic <= 8e-10; mimdsim 0.1.0 (5a20a0e3c74e), 41 runs, configurations'
-    long="$long c08d40d609aa; t3e-300, paragon and 2 more; left out: runs 18 on t3e-300, topology.dims 16x8x8, 12 on t3e-300,"
+    long="$long c08d40d609aa; t3e-300, paragon and 2 more; left out: 18 runs on t3e-300, topology.dims 16x8x8; 12 on t3e-300,"
     long="$long background.load 30 %, background.message 4 KiB and 3 more (28); drawn by d3d8ac9415ff"
     for text in "$long" 'mimdsim 0.1.0 (5a20a0e3c74e); drawn by d3d8ac9415ff' "${long// /_}"; do
         printf '%s\n' "$text" >x.provenance

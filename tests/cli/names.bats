@@ -72,12 +72,12 @@ fast, wide'
         works mimdsim run fig6 --set n=8,16,32 --set level=loggp --set machine.network.hop_latency="$latency us" -o a.db --quiet
     done
     works mimdsim plot a.db fig6 --quiet
-    grep -q 't3e-300, hop_latency 6 us; left out: runs 6 on t3e-300, hop_latency 60 us' figures/fig6.provenance
+    grep -q 't3e-300, hop_latency 6 us; left out: 6 runs on t3e-300, hop_latency 60 us' figures/fig6.provenance
     grep -q 't3e-300‚ hop_latency 6 us' figures/fig6.csv
     [ "$(grep -c 'hop_latency 60' figures/fig6.csv)" = 0 ]
     works mimdsim run fig6 --set n=8,16,32 --set level=loggp -o a.db --quiet
     works mimdsim plot a.db fig6 --quiet
-    grep -q 't3e-300; left out: runs 6 on t3e-300, hop_latency 6 us, 6 on t3e-300, hop_latency 60 us' figures/fig6.provenance
+    grep -q 't3e-300; left out: 6 runs on t3e-300, hop_latency 6 us; 6 on t3e-300, hop_latency 60 us' figures/fig6.provenance
     # chosen by name
     works mimdsim plot a.db fig6 --where 'label=t3e-300, hop_latency 60 us' --quiet
     grep -q '; t3e-300, hop_latency 60 us$' figures/fig6.provenance

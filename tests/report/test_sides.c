@@ -418,16 +418,17 @@ static void what_a_figure_leaves_out_is_told(void **state)
     /* of other sizes of a machine that is shown nothing is said */
     assert_null(strstr(rows_of(f, "[1]"), "left out"));
     put(f, "paragon", 8, 0, 1e-7, 1e-3);
+    assert_string_equal(rows_of(f, "[1,2]"), "t3e-300; left out: 1 run on paragon");
     put(f, "paragon", 16, 0, 1e-7, 1e-3);
     put(f, "origin2000", 8, 0, 1e-7, 1e-3);
     assert_string_equal(rows_of(f, "[1,2]"),
-                        "t3e-300; left out: runs 2 on paragon, 1 on origin2000");
+                        "t3e-300; left out: 2 runs on paragon; 1 on origin2000");
     put(f, "paragon", 32, 0, 1e-7, 1e-3);
     put(f, "origin2000", 16, 0, 1e-7, 1e-3);
     for (int i = 0; i < 3; i++) put(f, "quad-ppro", 8 << i, 0, 1e-7, 1e-3);
     put(f, "cluster", 8, 0, 1e-7, 1e-3);
     assert_string_equal(rows_of(f, "[1]"),
-                        "t3e-300; left out: runs 3 on paragon, 3 on quad-ppro and 2 more (3)");
+                        "t3e-300; left out: 3 runs on paragon; 3 on quad-ppro and 2 more (3)");
     assert_string_equal(rows_of(f, "[]"), "");
 }
 
