@@ -35,9 +35,10 @@ static const char doc[] =
     "those with fewer than 5 undisturbed repetitions, and those during which the computer's speed "
     "changed, are shown and not counted.\n\n"
     "A real run notes how fast the computer was before and after each burst of repetitions, and "
-    "calibrate notes it in the machine file. Column slower tells how many times as long the "
-    "prediction is with the machine's prices times what operations took at the run, over what they "
-    "took then; error_at_% is the error of that prediction (docs/reality.md).\n\n"
+    "calibrate notes it in the machine file. From the two follows a corrected prediction: each "
+    "price of the machine is multiplied by how many times as long its operation took at the run. "
+    "Column slower is the corrected prediction over the plain one, and corrected_% its error "
+    "(docs/reality.md).\n\n"
     "--stages: each stage on a line of its own.";
 
 enum { MOST_ROWS = 1000 };
@@ -102,8 +103,8 @@ static void print_row(struct summary *s, const struct run_spec *spec, const stru
     char why[48] = "-", load[24] = "-", slower[24] = "-", error[24] = "-";
     print_machines(s, spec, m);
     if (s->shown == 0)
-        printf("%-18s %6s %4s %12s %12s %8s %6s %7s %10s  %-34s %s\n", "program", "n", "P",
-               "measured_us", "predicted_us", "error_%", "load", "slower", "error_at_%",
+        printf("%-18s %6s %4s %12s %12s %8s %6s %7s %11s  %-34s %s\n", "program", "n", "P",
+               "measured_us", "predicted_us", "error_%", "load", "slower", "corrected_%",
                "explained by", "stage");
     if (p->explains < PRICES)
         snprintf(why, sizeof why, "%s x %.2f", price_name(p->explains), p->factor);
@@ -114,7 +115,7 @@ static void print_row(struct summary *s, const struct run_spec *spec, const stru
         snprintf(slower, sizeof slower, "%.2f", at->slower);
         snprintf(error, sizeof error, "%.1f", 100 * at->error);
     }
-    printf("%-18s %6d %4d %12.3f %12.3f %8.1f %6s %7s %10s  %-34s %s%s%s\n", spec->kernel.name,
+    printf("%-18s %6d %4d %12.3f %12.3f %8.1f %6s %7s %11s  %-34s %s%s%s\n", spec->kernel.name,
            spec->model.nbody, spec->nrank, p->measured * 1e6, p->predicted * 1e6, 100 * p->error,
            load, slower, error, why, p->worst >= 0 ? p->stage[p->worst].name : "-",
            measured_run_left_out(m)[0] != '\0' ? "; not counted: " : "", measured_run_left_out(m));
@@ -170,7 +171,7 @@ static void print_summary(struct summary *s)
                 s->c->database);
     if (s->unnoted > 0 && !s->c->quiet)
         fprintf(stderr, "mimdsim: the machine file does not say how fast the computer was when it "
-                        "was calibrated, so no prediction is made at the condition of a run: "
+                        "was calibrated, so no prediction is corrected for its speed at a run: "
                         "calibrate again\n");
     if (s->c->json || s->n == 0) return;
     sort_numbers(s->error, (size_t)s->n);
@@ -178,10 +179,9 @@ static void print_summary(struct summary *s)
            100 * s->error[s->n - 1]);
     if (s->nat == 0) return;
     sort_numbers(s->at, (size_t)s->nat);
-    printf("error at the condition of each run (the machine's prices times what operations took "
-           "there, which makes predictions %.2f to %.2f times as long) of %d: median %.1f %%, "
-           "largest %.1f %%\n",
-           s->least, s->most, s->nat, 100 * s->at[s->nat / 2], 100 * s->at[s->nat - 1]);
+    printf("error of %d, corrected for the speed of the computer at each run (which makes "
+           "predictions %.2f to %.2f times as long): median %.1f %%, largest %.1f %%\n",
+           s->nat, s->least, s->most, 100 * s->at[s->nat / 2], 100 * s->at[s->nat - 1]);
 }
 
 /* --- the command ------------------------------------------------------------------------------ */

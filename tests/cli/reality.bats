@@ -99,7 +99,7 @@ planted() {
 # on_mine OPTION...: predictions for the planted run by a Paragon of which a file says how fast it was when it was measured.
 on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
 
-@test "predict tells at which condition a run was made, and what the machine predicts there" {
+@test "predict corrects predictions for the speed that the computer had at a run" {
     needs mpich
     planted
     # Five bursts of four repetitions, while operations took twice as long as at calibration; as a Paragon of half the rates.
@@ -115,10 +115,10 @@ on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
         WITH RECURSIVE i(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM i WHERE k < 19)
             INSERT INTO real_sample SELECT real_id, k, median_s, 0 FROM real_run, i"
     on_mine
-    stdout_says 'slower error_at_%'
+    stdout_says 'slower corrected_%'
     stdout_says 'error of 1: median '
-    stdout_says "error at the condition of each run (the machine's prices times what operations took there"
-    stdout_says 'of 1: median 0.0 %, largest 0.0 %'
+    stdout_says 'error of 1, corrected for the speed of the computer at each run (which makes predictions 1.'
+    stdout_says ' times as long): median 0.0 %, largest 0.0 %'
     on_mine --json
     json_is_valid
     json_is '$[0].bursts' 5
@@ -134,7 +134,7 @@ on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
     sqlite3 r.db "UPDATE real_run SET text = '{\"bursts\": 5, \"call\": \"[\", \"chain\": [[], null, \"x\"], \"copy\": [-1e999'"
     on_mine
     stdout_says 'error of 1: median '
-    [[ $output != *'at the condition'* ]]
+    [[ $output != *'corrected for'* ]]
     sqlite3 r.db "UPDATE real_run SET text = text || ']}'" # now it is JSON
     on_mine --json
     json_is '$[0].bursts' 0
@@ -143,7 +143,7 @@ on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
     sed -i 's/; probe 1 ns//' mine.yaml
     on_mine
     stderr_says 'the machine file does not say how fast the computer was when it was calibrated'
-    [[ $output != *'at the condition'* ]]
+    [[ $output != *'corrected for'* ]]
 }
 
 @test "a real run notes how fast the computer was before and after each of its bursts" {
