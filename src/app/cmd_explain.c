@@ -107,6 +107,15 @@ static void print_count(double x, int width, int digits)
     else printf(" %*.*f", width, digits, x);
 }
 
+/* The size of the problem: bodies, or what a program of one's own declares as its n. */
+static double size_of(const struct run_spec *s, const struct run_estimate *r)
+{
+    char text[32];
+    if (s->kernel.own && program_value_find(s->program.parameters, "n", text, sizeof text))
+        return s->model.nbody;
+    return r->nu > 0 ? (double)r->nbody : NAN;
+}
+
 /* One line of the table. Without a model there are no formulation and no bodies. */
 static void print_run(const struct run_spec *s, const struct run_estimate *r)
 {
@@ -114,7 +123,7 @@ static void print_run(const struct run_spec *s, const struct run_estimate *r)
                 form = choice_of(s, "kernel.formulation");
     printf("%-12.12s %-10s %-12s %-14s", s->machine.name, s->kernel.name, r->nu > 0 ? form.s : "-",
            level.s);
-    print_count(r->nu > 0 ? (double)r->nbody : NAN, 8, 0);
+    print_count(size_of(s, r), 8, 0);
     printf(" %8d", s->nrank);
     print_count(r->messages, 12, 0);
     print_count(r->bytes / 1e6, 12, 3);

@@ -20,6 +20,9 @@ commands() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$MIMDSIM_SRCD
         works bash -c "mimdsim() { \"\$MIMDSIM\" \"\$@\"; }; $line" </dev/null
     done <list
     [ -s figures/speedup-heat.png ]
+    # its n is known before it runs
+    works mimdsim explain heat.yaml
+    grep -qE '^t3e-300 +heat +- +packet +100000 +32 ' <<<"$output"
     works mimdsim query mimdsim.db "SELECT count(*) FROM run WHERE status <> 'ok'"
     [ "${lines[1]//[ ]/}" = 0 ]
 }
