@@ -32,9 +32,9 @@ static const char doc[] =
     "counted; when too few are left, nothing is written and the exit status is 75. Messages need "
     "two processes: mpirun -n 2 mimdsim calibrate. With one there are rates alone "
     "(docs/reality.md).\n\n"
-    "Kernels and loops are measured at the beginning and at the end, and the lesser times are "
-    "kept; it is told when the computer's speed changed between. How fast it was is noted in the "
-    "file, where predict finds it.\n\n"
+    "Kernels and loops are measured at the beginning and at the end, and the shorter times are "
+    "kept; a message says when the computer's speed changed in between. How fast it was is noted "
+    "in the file, where predict finds it.\n\n"
     "--quick: fewer samples and sizes of kernels, under 30 s; else under 5 minutes.";
 
 enum { TAG_DONE = 600, QUICK_SAMPLES = 60, FULL_SAMPLES = 400, MORE_PASSES = 3 };

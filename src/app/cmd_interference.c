@@ -26,7 +26,7 @@ static const char doc[] =
     "\vEach job lies on the same processors in every combination. Beside 'background' it runs "
     "alone, with random traffic on all links in place of the others: as much as they put on the "
     "mean link, in messages of their mean size, drawn five times (once where the program or the "
-    "machine draws, too). Its error is the slow-down beside it over the slow-down beside all "
+    "machine draws, too). Its error is the slowdown beside it over the slowdown beside all "
     "others, less one. Runs that are stored already are not repeated.";
 
 /* SAMPLES: of the background, which is drawn by chance. */

@@ -8,10 +8,10 @@
 #include "app/verb.h"
 
 static const char doc[] =
-    "Offer random traffic to the network of each MACHINE and measure latency (mean, median, 99 %, "
-    "maximum) and accepted load against offered load, and the load at which it saturates. Rows go "
-    "to tables `load_series` and `load_point` of the database, one figure for each traffic to "
-    "load-TRAFFIC.png and .svg. Stored points are not measured again.\n\n"
+    "Offer random traffic to the network of each MACHINE and measure latency (mean, median, 99th "
+    "percentile, maximum) and accepted load against offered load, and the load at which it "
+    "saturates. Rows go to tables `load_series` and `load_point` of the database, one figure for "
+    "each traffic to load-TRAFFIC.png and .svg. Stored points are not measured again.\n\n"
     "Example: mimdsim load t3e-300 --traffic uniform,tornado --level packet,flit --rates 0.05:0.8\n"
     "\vA load of 1 keeps one link of the machine's link rate busy for each node, headers included. "
     "Latency counts from the creation of a message to its last flit, with the wait at the source; "

@@ -23,8 +23,9 @@ static const char doc[] =
     "the runs it needs.\n\n"
     "KEY is a column of the view v_run or of table run, a setting such as "
     "machine.network.hop_latency, or the end of one; a query has its own columns. Axes are "
-    "logarithmic where the range asks for it. Several runs in one place are told apart by "
-    "curves; what --by leaves together is drawn as mean and spread, and told on standard error.";
+    "logarithmic where the range asks for it. Several runs in one place become "
+    "several curves; what --by leaves together is drawn as mean and spread, which standard error "
+    "says.";
 
 /* The pictures that figure `name` stands for, as paths: a script can pick them up. */
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j,

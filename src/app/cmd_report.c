@@ -20,7 +20,7 @@ static const char doc[] =
     "write DB.md and DB.html next to the folder of figures: every run by kernel and\n"
     "machine, claims, figures, error against run time, stability, omissions and what\n"
     "they save. DB.html is one file without anything from elsewhere: its tables sort\n"
-    "by a click on a heading, its pictures tell numbers under the pointer.\n\n"
+    "by a click on a heading, its pictures show numbers under the pointer.\n\n"
     "Example: mimdsim report mimdsim.db\n"
     "\vNothing is run: `mimdsim accuracy`, `stability` and `explain --measure` fill\n"
     "the database. Without gnuplot the report has no pictures, says so, and the exit\n"

@@ -37,7 +37,7 @@ static const char doc[] = "Explain what the time of a run is made of: its critic
                           "factor at which they take over.\n\n"
                           "'Perfect balance' lets every rank compute the mean over all ranks in "
                           "each stage. Slack is the longest delay that leaves the run as long as "
-                          "it is. The last table tells which rate computing, the port and message "
+                          "it is. The last table says which rate computing, the port and message "
                           "software would allow by themselves.\n\n"
                           "--brief: the path and the contributions alone, from one run.";
 

@@ -54,7 +54,7 @@ bool keep_draw(const struct common *c, struct store *s, const char *figure, stru
     if (!report_drawings_find(s, plan_data_dir(), figure, &d, e)) return false;
     for (int i = 0; i < d.n; i++)
         fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, d.as[i]);
-    fprintf(stderr, "mimdsim: its section: mimdsim report %s\n", c->database);
+    fprintf(stderr, "mimdsim: a report with it: mimdsim report %s\n", c->database);
     report_drawings_free(&d);
     return true;
 }

@@ -14,7 +14,7 @@ bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err 
 bool keep_stability(struct store *s, const struct stability_report *r, struct err *e);
 
 /* keep_draw: draw `figure` from `s` into the folder that the command line names, and say on stderr,
- * unless quiet, where it is and how to have its section. Returns false as report_figure. */
+ * unless quiet, where it is and how to have a report with it. Returns false as report_figure. */
 bool keep_draw(const struct common *c, struct store *s, const char *figure, struct err *e);
 
 #endif

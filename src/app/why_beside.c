@@ -92,7 +92,7 @@ void why_slack_sentence(const struct why *w, FILE *out)
         return;
     }
     fprintf(out,
-            "Beside it %d %s slack: %s at least, %s in the middle, %s at most.\n", others,
+            "Beside it %d %s slack: %s at least, %s in the median, %s at most.\n", others,
             others == 1 ? "rank has" : "ranks have",
             why_duration((double)s.least, least, sizeof least),
             why_duration((double)s.median, median, sizeof median),

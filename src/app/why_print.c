@@ -62,11 +62,11 @@ static void print_help(const struct why *w, FILE *out)
         if (l->makespan_ps > 0) last = l;
     }
     if (best == NULL) return;
-    fprintf(out, "Of the idealised machines %s helps most: %.4g times as fast", best->name,
+    fprintf(out, "Of the idealised machines '%s' helps most: %.4g times as fast", best->name,
             (double)w->run.makespan_ps / (double)best->makespan_ps);
     /* The last one changes the program's shares of work, not the machine. */
     if (last != best)
-        fprintf(out, "; %s: %.4g times", last->name,
+        fprintf(out, "; '%s': %.4g times", last->name,
                 (double)w->run.makespan_ps / (double)last->makespan_ps);
     fprintf(out, ".\n");
 }

@@ -69,7 +69,7 @@ void trace_text(const struct timeline *t, FILE *out)
     if (t->begin_ps > begin) begin = t->begin_ps;
     if (t->end_ps < end) end = t->end_ps;
     if (*t->title) fprintf(out, "%s\n", t->title);
-    fprintf(out, "%.3f to %.3f us, one letter is %.3f us\n", (double)begin * 1e-6,
+    fprintf(out, "%.3f to %.3f us, one column is %.3f us\n", (double)begin * 1e-6,
             (double)end * 1e-6, (double)(end - begin) * 1e-6 / columns_of(t));
     fputs("what: # compute  > send  < receive  . wait  | barrier\nstages:", out);
     /* A letter for each stage, as in the bars. */

@@ -106,11 +106,11 @@ static void the_sentence_tells_how_near_the_others_are(void **state)
     (void)state;
     struct why w = made_why();
     assert_string_equal(printed(why_slack_sentence, &w),
-                        "Beside it 2 ranks have slack: 2 ns at least, 4 ns in the middle, 4 ns at "
+                        "Beside it 2 ranks have slack: 2 ns at least, 4 ns in the median, 4 ns at "
                         "most.\n");
     w.run.rank_slack[2 * STAGES + 2] = 0; /* rank 2 is critical, too */
     assert_string_equal(printed(why_slack_sentence, &w),
-                        "Beside it 1 rank has slack: 2 ns at least, 2 ns in the middle, 2 ns at "
+                        "Beside it 1 rank has slack: 2 ns at least, 2 ns in the median, 2 ns at "
                         "most.\n");
     w.run.rank_slack[1 * STAGES] = 0;
     assert_string_equal(
@@ -144,7 +144,7 @@ static void the_sentence_is_that_of_a_sorted_list(void **state)
         char expected[200] = "Every rank";
         if (n > 0)
             snprintf(expected, sizeof expected,
-                     "Beside it %d %s slack: %d ns at least, %d ns in the middle, %d ns at most.\n",
+                     "Beside it %d %s slack: %d ns at least, %d ns in the median, %d ns at most.\n",
                      n, n == 1 ? "rank has" : "ranks have", (int)(worst[0] / 1000),
                      (int)(worst[n / 2] / 1000), (int)(worst[n - 1] / 1000));
         const char *said = printed(why_slack_sentence, &w);

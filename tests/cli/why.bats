@@ -23,7 +23,7 @@ load helper
 
 @test "why tells how much later the rest may be, where the path passes, and computing against communication" {
     works mimdsim why speedup-t3e --set n=16 --set level=link -o own.db --quiet
-    stdout_says 'Of the idealised machines zero overhead helps most'
+    stdout_says "Of the idealised machines 'zero overhead' helps most"
     stdout_says 'Before the run is 5 % longer, software'
     stdout_says 'Slack of the ranks'
     stdout_says 'Links and ports that the path passes'

@@ -332,7 +332,7 @@ static void the_time_of_a_letter_is_that_of_the_bar(void **state)
         assert_non_null(bar);
         assert_int_equal(shown, 0); /* the head has one sign alone */
         const double length = (double)strspn(bar + 10, "#");
-        snprintf(wanted, sizeof wanted, "0.000 to 5.000 us, one letter is %.3f us", 5 / length);
+        snprintf(wanted, sizeof wanted, "0.000 to 5.000 us, one column is %.3f us", 5 / length);
         if (strstr(text, wanted) == NULL) fail_msg("no '%s' in %.80s", wanted, text);
         free(text);
     }
