@@ -101,6 +101,17 @@ save_next() {
     grep -qF '8 of 8 right' ring/report.html
 }
 
+@test "the commands about campaigns, jobs and recorded traffic run" {
+    if ! command -v gnuplot >/dev/null; then skip; fi
+    run_document "$MIMDSIM_SRCDIR/docs/campaigns.md" 3
+    save_block "$MIMDSIM_SRCDIR/docs/jobs.md" 'Save this as `two.yaml`' two.yaml
+    run_document "$MIMDSIM_SRCDIR/docs/jobs.md" 5
+    run_document "$MIMDSIM_SRCDIR/docs/load.md" 1
+    # load curves take long: one point of them
+    traffic=$(quoted "$MIMDSIM_SRCDIR/docs/load.md" | grep 'traffic program.db')
+    works ${traffic} --rates 0.1 --no-saturation --messages 10000
+}
+
 @test "the commands of other documents have verbs and options that exist" {
     for document in "$MIMDSIM_SRCDIR"/docs/*.md; do
         quoted "$document" >commands
