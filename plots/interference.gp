@@ -38,6 +38,10 @@ do for [format in formats] {
     unset grid; set border 0
     set cbrange [1:top]
     set format cb "%.2f"
+    # as many numbers beside the bar of colours as there is room for
+    step = 0.01
+    do for [next in "0.02 0.05 0.1 0.2 0.5 1 2 5 10 20 50 100 200 500"] { if ((top - 1)/step > ny*cell_high/22) { step = real(next) } }
+    set cbtics 1,step
     set xrange [0.5:nx + 0.5]; set yrange [0.5:ny + 0.5]
     set xtics () scale 0 offset 0,tick_lift(format); set ytics () scale 0
     do for [m=1:panels] {

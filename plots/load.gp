@@ -11,12 +11,14 @@ stats data using (k = int(column("curve")), name[k] = strcol("name"), sat[k] = s
     low[k] = strcol("low") eq "" ? -1 : column("low"), high[k] = strcol("high") eq "" ? -1 : column("high"), \
     lowest = column("empty_ns") < lowest ? column("empty_ns") : lowest, highest = column("empty_ns") > highest ? column("empty_ns") : highest, \
     headline = "Latency and accepted load: ".strcol("traffic")." traffic", 0) nooutput
-subline = "lines: mean, with its 95 % interval;  dashed: 99 % of the messages;  vertical: saturation (three times the empty network)"
+subline = "lines: mean, with its 95 % confidence interval;  dashed: 99th percentile;  vertical: saturation (three times the empty network)"
 of(k, v) = column("curve") == k ? v : NaN
+# of an interval that a logarithmic axis cannot hold, the part that it can
+from(v) = v > lowest*0.7 ? v : lowest*0.7
 rows = (last + 1)/2
 
 do for [format in formats] {
-    high_px = 500.0 + 20*rows
+    high_px = 512.0 + 20*rows
     page_wide = 1000; page_high = int(high_px)
     if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
     else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
@@ -25,7 +27,7 @@ do for [format in formats] {
     set label 97 headline at screen 0.5,(1.0 - 20/high_px) center noenhanced font large(format)
     set label 98 subline at screen 0.5,(1.0 - 44/high_px) center noenhanced textcolor rgb grey font small(format)
     set label 99 foot(provenance, page_wide) at screen 0.99,(9/high_px + foot_lift(provenance, page_wide)*1.0/page_high) right noenhanced font least(format) textcolor rgb grey
-    set tmargin at screen 1.0 - 68.0/high_px; set bmargin at screen (72.0 + 20*rows)/high_px
+    set tmargin at screen 1.0 - 68.0/high_px; set bmargin at screen (84.0 + 20*rows)/high_px
     set xtics autofreq offset 0,tick_lift(format)
     set xrange [0:*]
     # latency
@@ -41,8 +43,8 @@ do for [format in formats] {
         set arrow 30+k from low[k],lowest*0.74 to high[k],lowest*0.74 nohead linewidth 4 linecolor rgb colour[turn(k)]
     } }
     plot for [k=1:last] data using "offered":(of(k, number("p99_ns"))) with lines linewidth 1 dashtype 2 linecolor rgb colour[turn(k)], \
-         for [k=1:last] data using "offered":(of(k, number("mean_ns"))):(number("half_ns")) with yerrorbars linewidth 1.2 pointtype 0 \
-            linecolor rgb colour[turn(k)], \
+         for [k=1:last] data using "offered":(of(k, number("mean_ns"))):(from(number("mean_ns") - number("half_ns"))): \
+            (number("mean_ns") + number("half_ns")) with yerrorbars linewidth 1.2 pointtype 0 linecolor rgb colour[turn(k)], \
          for [k=1:last] data using "offered":(of(k, number("mean_ns"))) with lines linewidth 1.6 linecolor rgb colour[turn(k)], \
          for [k=1:last] data using "offered":(near(of(k, number("mean_ns")))):(sprintf("load %.4g: mean %.5g ns, 99 %% below %.5g ns", \
             column("offered"), number("mean_ns"), number("p99_ns"))) with labels hypertext point pointtype point[turn(k)] pointsize 0.6 \

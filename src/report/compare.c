@@ -397,7 +397,7 @@ bool compare_draw(const struct compare *c, const char *data_dir, const char *dir
     struct text title = {0}, errors = {0};
     const int most = MOST_BARS / c->nside;
     for (int i = 0; i < c->nside; i++)
-        text_add(&title, "%s%s", i > 0 ? " and " : "", c->side[i].name);
+        text_add(&title, "%s%s", i == 0 ? "" : i + 1 < c->nside ? ", " : " and ", c->side[i].name);
     /* Two points make no curve, and points that differ in words have no axis. */
     const bool lines = c->x_only && c->ncommon > 2;
     /* What the script has to know stands in one row, as for mimdsim plot. */
