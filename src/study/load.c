@@ -216,8 +216,8 @@ static bool first_length(const struct load_question *q, double offered, double *
     if (*cycles * rate > q->most) *cycles = floor(q->most / rate);
     if (*cycles < least)
         return err_set(e, ERR_CONFIG,
-                       "load %g needs at least %.0f messages, to cross the network %d times; at most "
-                       "%d are allowed: allow more (--messages), or ask for lower loads",
+                       "load %g needs at least %.0f messages, to cross the network %d times; at "
+                       "most %d are allowed: allow more (--messages), or ask for lower loads",
                        offered, ceil(least * rate), LEAST_LATENCIES, q->most);
     if (*cycles * q->cycle_ps > (double)PS_LAST / 4)
         return err_set(e, ERR_CONFIG, "load %g takes longer than the largest simulated time",
