@@ -54,6 +54,16 @@ static const char *value_of(const struct lab *l, const char *word, size_t n)
     return NULL;
 }
 
+/* The table of predictions: what is asked stands beside the name under which answers.yaml has it. */
+static void add_questions(const struct lab *l, struct text *out)
+{
+    text_add(out, "| in answers.yaml | question | unit | your formula | your number |\n"
+                  "|---|---|---|---|--:|\n");
+    for (int i = 0; i < l->nquestion; i++)
+        text_add(out, "| %s | %s | %s | | |\n", l->question[i].name, l->question[i].text,
+                 l->question[i].unit);
+}
+
 void lab_fill(const struct lab *l, const char *template, struct text *out)
 {
     const char *s = template;
@@ -67,6 +77,13 @@ void lab_fill(const struct lab *l, const char *template, struct text *out)
         /* A line of the other kind of program goes as a whole. */
         if (word != NULL && is_word(word, n, l->mpi ? "kernel" : "mpi")) {
             s += strcspn(s, "\n");
+            s += *s == '\n';
+            continue;
+        }
+        /* In a file of the copy alone: questions are filled in one by one before all are known. */
+        if (word != NULL && is_word(word, n, "questions")) {
+            add_questions(l, out);
+            s += n + 2;
             s += *s == '\n';
             continue;
         }

@@ -44,7 +44,7 @@ solve() {
     stencil)
         set -- messages $((2 * (P - 1) * steps)) bytes $((2 * (P - 1) * steps * n * 8)) \
             send-overhead $((2 * (P - 1) * steps * o * 1000000)) ;;
-    deadlock) set -- waiting "$P" messages "$P" bytes $((P * 8)) ;;
+    deadlock) set -- waiting "$P" messages "$P" bytes $((P * 8)) time $((2 * ((2 * o + 3 * L) * 1000000 + 7 * G * 1000))) ;;
     matrix-multiply)
         m=$(number "$f" strip)
         b=$((8 * m * m * P)) # a strip of m rows of m P numbers

@@ -222,6 +222,16 @@ answers_of() { sed -n '/^answers:/,$s/^  [A-Za-z-]*: \([0-9]\{3,\}\)$/\1/p' "$1/
     works mimdsim lab deadlock && [ ! -e deadlock/measure.yaml ]
 }
 
+@test "a deadlock that is avoided by buffered sends is not what was asked for" {
+    works mimdsim lab deadlock
+    solve deadlock deadlock
+    works mimdsim lab check deadlock
+    sed -i 's/comm_issend/comm_isend/' deadlock/deadlock.c
+    fails_with 1 mimdsim lab check deadlock
+    stdout_says '3 of 4 right'
+    grep -q '^time .*the program does something else' <<<"$output"
+}
+
 @test "how a program ended is told once, and with its place" {
     works mimdsim lab deadlock
     fails_with 1 mimdsim lab check deadlock

@@ -146,6 +146,20 @@ static void templates_are_filled(void **state)
     }
 }
 
+/* Name, question and unit of each, and room for the student's numbers. */
+static void a_text_has_the_table_of_questions(void **state)
+{
+    struct fixture *f = *state;
+    struct lab l;
+    struct text t = {0};
+    read_toy(f, &l, "", false);
+    lab_fill(&l, "before\n@questions@\nbehind @P@\n", &t);
+    assert_string_equal(t.s, "before\n| in answers.yaml | question | unit | your formula | your number |\n"
+                             "|---|---|---|---|--:|\n"
+                             "| rounds | How many rounds do 4 ranks take? | rounds | | |\nbehind 4\n");
+    text_free(&t);
+}
+
 static void the_picture_is_of_the_kind(void **state)
 {
     struct fixture *f = *state;
@@ -289,6 +303,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(a_number_follows_another),
         TEST(templates_are_filled),
+        TEST(a_text_has_the_table_of_questions),
         TEST(the_picture_is_of_the_kind),
         TEST(sliders_have_the_own_value),
         TEST(a_copy_is_an_attempt),
