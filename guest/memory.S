@@ -23,7 +23,7 @@ mimdsim_\name:
     .section mimdsim_blocks,"ao",@progbits,\label
     .balign 4
     .long \label-4-., 0
-    .value 0, 0, 0, 0, 0, 0, \counts, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1
+    .value 0, 0, 0, 0, 0, 0, \counts, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1
     .endm
 
     counted memcpy, .Lcopy, 2048

@@ -7,7 +7,7 @@
 #include <mimdsim/program.h>
 
 enum { SUM, SCALED, BLUR, VECTOR, RECURRENCE, POLYNOMIAL, DRAW, CHASE, COUNT, SCAN, RATIO, ROOT,
-       LOADS, MORE_LOADS, ROWS, MIX, ADDITIONS, PRODUCTS, POWERS, SHIFTED };
+       LOADS, MORE_LOADS, ROWS, MIX, ADDITIONS, PRODUCTS, POWERS, SHIFTED, SERIES, NESTED };
 enum { MOST = 16384, RING = 512, NEAR = 768 };
 
 /* Places of different arrays are not a multiple of 4 KiB apart, where a load would be taken for one
@@ -208,6 +208,32 @@ static double shifted(int64_t n, double by)
     return c[5];
 }
 
+/* Long rounds whose instructions wait for each other, but not for those of another round: terms of
+ * a series, of which each is a product of the one before, and a polynomial. */
+static double series(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) {
+            const double x = 0.9 * a[i];
+            double term = by, s = by;
+            for (int j = 0; j < 12; j++) s += term *= x;
+            c[i] = s;
+        }
+    return c[5];
+}
+
+static double nested(int64_t n, double by)
+{
+    for (int64_t k = 0; k < n; k += NEAR)
+        for (int64_t i = 0; i < NEAR; i++) {
+            const double x = b[i];
+            double s = (((((by * x + 0.2) * x - 0.3) * x + 0.4) * x - 0.5) * x + 0.6) * x - 0.7;
+            s = (((((s * x + 0.2) * x - 0.3) * x + 0.4) * x - 0.5) * x + 0.6) * x - 0.7;
+            c[i] = (((((s * x + 0.2) * x - 0.3) * x + 0.4) * x - 0.5) * x + 0.6) * x - 0.7;
+        }
+    return c[5];
+}
+
 static double once(int64_t n, double by)
 {
     switch (loop) {
@@ -249,6 +275,10 @@ static double once(int64_t n, double by)
         return powers(n, by);
     case SHIFTED:
         return shifted(n, by);
+    case SERIES:
+        return series(n, by);
+    case NESTED:
+        return nested(n, by);
     default:
         return scan(n, by);
     }
@@ -273,6 +303,6 @@ PROGRAM(.title = "loops of several kinds",
                       PROGRAM_CHOICE(loop,
                                      "sum|scaled|blur|vector|recurrence|polynomial|draw|chase|"
                                      "count|scan|ratio|root|loads|more_loads|rows|mix|"
-                                     "additions|products|powers|shifted",
+                                     "additions|products|powers|shifted|series|nested",
                                      "which loop")},
         .output = {"result"}, .run = run, .serial = {{"the same", run}}, .tolerance = 1e-12);

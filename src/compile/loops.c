@@ -259,12 +259,16 @@ static bool take_round(struct round *r, const struct code *c, const struct loops
 }
 
 /* Lengths are below some ten thousand, so that they fit. */
-static void set_chain(struct block_counts *c, struct chain_length length)
+static void set_chains(struct block_counts *c, struct chain_length length, struct chain_length once)
 {
     c->chain_flop = (uint16_t)length.flop;
     c->chain_cycle = (uint16_t)length.cycles;
     c->chain_late = (uint16_t)length.late;
     c->chain_product = (uint16_t)length.product;
+    c->once_flop = (uint16_t)once.flop;
+    c->once_cycle = (uint16_t)once.cycles;
+    c->once_late = (uint16_t)once.late;
+    c->once_product = (uint16_t)once.product;
 }
 
 /* --- the table -------------------------------------------------------------------------------- */
@@ -272,10 +276,12 @@ static void set_chain(struct block_counts *c, struct chain_length length)
 /* The words of an entry behind the first. */
 static void write_counts(struct text *table, const struct block_counts *c, enum block_kind kind)
 {
-    text_add(table, "\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n",
-             c->instruction, c->flop, c->div, c->sqrt, c->trig, c->call, c->bytes, c->issue,
-             c->load, c->whole, c->add, c->multiply, c->chain_flop, c->chain_cycle, c->chain_late,
-             c->chain_product, c->blocks, kind);
+    text_add(table, "\t.value %u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,%u,", c->instruction, c->flop,
+             c->div, c->sqrt, c->trig, c->call, c->bytes, c->issue, c->load, c->whole, c->add,
+             c->multiply);
+    text_add(table, "%u,%u,%u,%u,%u,%u,%u,%u,%u,%u\n", c->chain_flop, c->chain_cycle,
+             c->chain_late, c->chain_product, c->blocks, c->once_flop, c->once_cycle, c->once_late,
+             c->once_product, kind);
 }
 
 static void write_block(const struct code *c, int b, struct text *table)
@@ -294,7 +300,7 @@ static void take_own_chains(struct code *c, const struct loops *l, struct round 
     for (int b = 0; b < c->nblock; b++) {
         const struct code_loop alone = {.first = b, .last = b};
         if (jump_back(c, b) != b || !take_round(r, c, l, &alone)) continue;
-        set_chain(&c->block[b].counts, chain_round(&r->chain));
+        set_chains(&c->block[b].counts, chain_round(&r->chain), chain_once(&r->chain));
     }
 }
 
@@ -311,7 +317,7 @@ void loops_write(struct code *c, struct text *table)
         /* One block alone has all that the loop has. */
         if (x != NULL && x->last > b && take_round(r, c, &l, x)) {
             last = x->last;
-            set_chain(&r->counts, longest_chain(r));
+            set_chains(&r->counts, longest_chain(r), chain_once(&r->chain));
             text_add(table, "\t.long %d,0\n", last - b + 1);
             write_counts(table, &r->counts, BLOCK_LOOP);
         }

@@ -54,7 +54,7 @@ static const char *value_of(const struct lab *l, const char *word, size_t n)
     return NULL;
 }
 
-/* The table of predictions: what is asked stands beside the name under which answers.yaml has it. */
+/* The table of predictions: what is asked beside the name under which answers.yaml has it. */
 static void add_questions(const struct lab *l, struct text *out)
 {
     text_add(out, "| in answers.yaml | question | unit | your formula | your number |\n"

@@ -7,8 +7,8 @@
  * `@NUMBER@` in any of them stands for a number that the student's name chooses from a list, so
  * that neighbours have different ones; a number may follow from another (`k: {of: P, 8: 3, 16:
  * 4}`).
- * `@program@` is the file of the program, `@questions@` a table of all questions, and lines that
- * begin with `@kernel@` or `@mpi@` are for attempts of that kind alone. An attempt is a copy of that
+ * `@program@` is the file of the program, `@questions@` a table of all questions. Lines that begin
+ * with `@kernel@` or `@mpi@` are for attempts of that kind alone. An attempt is a copy of that
  * folder with answers.yaml, where the student writes predictions. */
 #ifndef LAB_LAB_H
 #define LAB_LAB_H

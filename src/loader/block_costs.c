@@ -28,7 +28,13 @@ static struct code_work code_of(const struct block_counts *counts)
                               .chain_flop = counts->chain_flop,
                               .chain_cycle = counts->chain_cycle,
                               .chain_late = counts->chain_late,
-                              .chain_product = counts->chain_product};
+                              .chain_product = counts->chain_product,
+                              .once_flop = counts->once_flop,
+                              .once_cycle = counts->once_cycle,
+                              .once_late = counts->once_late,
+                              .once_product = counts->once_product,
+                              .floating = (unsigned)counts->add + counts->multiply + counts->div +
+                                          counts->sqrt};
 }
 
 /* Processors keep decoded instructions in entries of up to ENTRY that lie in one line of LINE bytes
@@ -100,11 +106,8 @@ static int64_t loop_cost_ps(const struct loop *l, size_t i, const struct block_c
 {
     const struct work w = work_of(counts);
     struct code_work code = code_of(counts);
-    const bool last = i + 1 == l->end;
-    code.chain_flop = last ? l->round.chain_flop : 0;
-    code.chain_cycle = last ? l->round.chain_cycle : 0;
-    code.chain_late = last ? l->round.chain_late : 0;
-    code.chain_product = last ? l->round.chain_product : 0;
+    const bool last = i + 1 == l->end, chain = l->bound == BOUND_CHAIN || l->bound == BOUND_WINDOW;
+    if (chain) code = last ? l->round : (struct code_work){0};
     return ps_rounded(node_cost_bound_ps(c, &w, &code, l->bound) * factor);
 }
 

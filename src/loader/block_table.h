@@ -30,7 +30,7 @@
 #define BLOCK_NOTE_SECTION ".note.mimdsim"
 #define BLOCK_NOTE_NAME "mimdsim"
 
-enum { BLOCK_TABLE_ABI = 4, BLOCK_NOTE_OBJECT = 1 };
+enum { BLOCK_TABLE_ABI = 5, BLOCK_NOTE_OBJECT = 1 };
 
 /* Nominal cycles of a product in a chain (machine/node_cost.h). */
 enum { BLOCK_PRODUCT_CYCLES = CODE_PRODUCT_CYCLES };
@@ -65,6 +65,11 @@ struct block_counts {
     uint16_t chain_late;    /* of its additions, those that wait for something else than one */
     uint16_t chain_product; /* products, whose BLOCK_PRODUCT_CYCLES are in its cycles */
     uint16_t blocks;        /* blocks that are entered: 1, in a round of a loop more, of a rate 0 */
+    uint16_t once_flop;     /* of a loop: the longest chain of a round by itself, from its beginning
+                               to its last result, likewise in four numbers */
+    uint16_t once_cycle;
+    uint16_t once_late;
+    uint16_t once_product;
 };
 
 struct block_entry {
@@ -83,7 +88,7 @@ enum block_kind {
     BLOCK_LOOP  /* no word: what a round of the loop does whose blocks follow (compile/loops.h) */
 };
 
-_Static_assert(sizeof(struct block_entry) == 44,
-               "entries are written by the assembler as two longs and eighteen words");
+_Static_assert(sizeof(struct block_entry) == 52,
+               "entries are written by the assembler as two longs and twenty-two words");
 
 #endif

@@ -56,8 +56,18 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .add = cycles_ps(s->code.add, s->clock),
         .multiply = cycles_ps(s->code.multiply, s->clock),
         .fetch = cycles_ps(s->code.fetch, s->clock),
+        .window = s->code.window,
         .late = longer_ps(s->code.add_latency, s->code.chain, s->clock),
         .product =
             longer_ps(s->code.multiply_latency, CODE_PRODUCT_CYCLES * s->code.step, s->clock),
     };
+}
+
+/* The longest chain of a round by itself, divided by the rounds on their way. */
+double node_cost_window_ps(const struct node_cost *c, const struct code_work *code)
+{
+    if (!(c->window > 0)) return 0;
+    const double round = code->once_flop * c->chain + code->once_cycle * c->step +
+                         code->once_late * c->late + code->once_product * c->product;
+    return round * code->floating / (code->floating + c->window);
 }

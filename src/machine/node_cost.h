@@ -21,6 +21,7 @@ struct node_cost {
     double whole;
     double add, multiply; /* where nothing waits for them */
     double fetch;
+    double window; /* [instructions], 0: no bound */
     double late, product; /* how much longer than c->chain, and than CODE_PRODUCT_CYCLES steps, an
                              addition that waits for no addition and a product of a chain take */
 };
@@ -92,10 +93,12 @@ static inline double node_cost_code_ps(const struct node_cost *c, const struct w
  * vector registers, instructions that compute with whole numbers, those that add and multiply
  * floating-point numbers, and the longest chain of a loop: additions, `chain_late` of which wait
  * for no addition, and nominal cycles of other instructions, among them `chain_product` products.
- */
+ * `once` is the longest chain of a round by itself, and `floating` counts the instructions that
+ * floating-point units execute. */
 struct code_work {
     unsigned blocks, issue, load, whole, add, multiply;
     unsigned chain_flop, chain_cycle, chain_late, chain_product;
+    unsigned once_flop, once_cycle, once_late, once_product, floating;
     unsigned fetch; /* pieces of code that are fetched one after the other in a round of a loop */
 };
 
@@ -111,8 +114,13 @@ enum code_bound {
     BOUND_FETCH,    /* where the code of a loop lies */
     BOUND_ADD,      /* the units that add floating-point numbers */
     BOUND_MULTIPLY, /* and those that multiply them */
+    BOUND_WINDOW,   /* what a round waits for within itself, with few rounds on their way */
     CODE_BOUNDS
 };
+
+/* node_cost_window_ps: what a round takes at least [ps], as c->window floating-point ones can wait
+ * at a time, so that 1 + window / F rounds with F of them are on their way; 0: unknown. */
+double node_cost_window_ps(const struct node_cost *c, const struct code_work *code);
 
 /* node_cost_bound_ps: what a piece of code takes by one of them [ps], not rounded, by the finer
  * prices. Where loads have a price, the counter counts as an instruction. */
@@ -141,6 +149,8 @@ static inline double node_cost_bound_ps(const struct node_cost *c, const struct 
         return code->add * c->add;
     case BOUND_MULTIPLY:
         return code->multiply * c->multiply;
+    case BOUND_WINDOW:
+        return node_cost_window_ps(c, code);
     default:
         return (code->whole + code->blocks) * c->whole;
     }

@@ -75,7 +75,8 @@ static void add_code(const struct calibration *c, struct text *t)
     for (int i = 0; i < CODE_PRICES; i++) {
         /* Nothing at all would mean something else. */
         const double price = fmax(r->price[i], 1e-6);
-        snprintf(value, sizeof value, "%.4g cycles", price);
+        if (i == CODE_WINDOW) snprintf(value, sizeof value, "%.4g", code_price_window(r->price));
+        else snprintf(value, sizeof value, "%.4g cycles", price);
         char place[48];
         snprintf(place, sizeof place, "node.code.%s", code_price_name(i));
         noted_leaf(t, "    ", place, value, source, c);

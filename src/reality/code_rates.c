@@ -22,12 +22,15 @@ enum { ROUNDS = 16 };
 /* A price is raised by this part of itself, or of a small price where it is none [cycles]. */
 #define STEP 0.02
 #define SMALL_PRICE 0.05
+#define SMALL_WINDOW 0.001
 
 static const char *const names[CODE_PRICES] = {
     "issue", "div", "root",     "chain", "step",        "load",
-    "whole", "add", "multiply", "fetch", "add_latency", "multiply_latency"};
+    "whole", "add", "multiply", "fetch", "add_latency", "multiply_latency", "window"};
 
 const char *code_price_name(int i) { return names[i]; }
+
+double code_price_window(const double *price) { return 1 / fmax(price[CODE_WINDOW], 1e-6); }
 
 /* --- the fit ---------------------------------------------------------------------------------- */
 
@@ -60,7 +63,8 @@ static bool linear_piece(const struct code_rates *r, code_time_fn *time, void *c
         for (int j = 0; j < CODE_PRICES; j++) {
             double raised[CODE_PRICES], after;
             memcpy(raised, r->price, sizeof raised);
-            const double step = STEP * fmax(raised[j], SMALL_PRICE);
+            const double step =
+                STEP * fmax(raised[j], j == CODE_WINDOW ? SMALL_WINDOW : SMALL_PRICE);
             raised[j] += step;
             if (!time(context, i, raised, &after, e)) return false;
             /* Whole picoseconds a block are rounded: less than a thousandth is none. */
@@ -86,8 +90,8 @@ bool code_rates_fit(struct code_rates *r, code_time_fn *time, void *context, str
 {
     /* A processor of four instructions, two loads, additions and products a cycle and one piece of
      * code, whose additions take three. */
-    double price[CODE_PRICES] = {0.25, 5, 8, 3, 1, 0.5, 0.25, 0.5, 0.5, 1, 3, 4}, best[CODE_PRICES];
-    double least = INFINITY, squares;
+    double price[CODE_PRICES] = {0.25, 5, 8, 3, 1, 0.5, 0.25, 0.5, 0.5, 1, 3, 4, 0.01};
+    double best[CODE_PRICES], least = INFINITY, squares;
     memcpy(best, price, sizeof best);
     if (r->n < CODE_PRICES)
         return err_set(e, ERR_DATA, "%d loops are too few to fit prices of code to", r->n);
@@ -133,7 +137,8 @@ static bool simulated_time(void *context, int i, const double *price, double *se
                                                 .multiply = price[8],
                                                 .fetch = price[9],
                                                 .add_latency = fmax(price[10], 1e-6),
-                                                .multiply_latency = fmax(price[11], 1e-6)};
+                                                .multiply_latency = fmax(price[11], 1e-6),
+                                                .window = code_price_window(price)};
     const bool ok = predict_simulate(&spec, x->cache, a, r, e);
     *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
     arena_destroy(a);

@@ -7,7 +7,7 @@
 #include "plan/plan.h"
 #include "reality/passes.h"
 
-enum { CODE_RATES_MOST = 24, CODE_PRICES = 12 };
+enum { CODE_RATES_MOST = 24, CODE_PRICES = 13, CODE_WINDOW = CODE_PRICES - 1 };
 
 /* One loop. */
 struct code_sample {
@@ -17,7 +17,8 @@ struct code_sample {
 };
 
 /* Prices in cycles of the processor's clock, in the order of names: node.code.issue, div, root,
- * chain, step, load, whole, add, multiply, fetch, add_latency, multiply_latency. */
+ * chain, step, load, whole, add, multiply, fetch, add_latency, multiply_latency; and at CODE_WINDOW
+ * 1 / node.code.window, so that time grows with it as with the others. */
 struct code_rates {
     double price[CODE_PRICES];        /* [cycles] */
     double residual, median_residual; /* relative: the largest, the median */
@@ -27,6 +28,9 @@ struct code_rates {
 
 /* code_price_name: the key of price `i` behind "node.code.". */
 const char *code_price_name(int i);
+
+/* code_price_window: node.code.window [instructions] of such prices. */
+double code_price_window(const double *price);
 
 /* A time that depends on prices: seconds of sample `i` at `price` (CODE_PRICES, cycles). False with
  * an error when it cannot be told. */

@@ -86,7 +86,8 @@ static void apply_to_code(struct code_spec *c, double issue, double wait)
                             .multiply = c->multiply * issue,
                             .fetch = c->fetch * issue,
                             .add_latency = c->add_latency * wait,
-                            .multiply_latency = c->multiply_latency * wait};
+                            .multiply_latency = c->multiply_latency * wait,
+                            .window = c->window};
 }
 
 void condition_apply(struct machine_spec *m, const struct condition_reference *r,

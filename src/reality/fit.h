@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-enum { FIT_MOST_UNKNOWNS = 12 };
+enum { FIT_MOST_UNKNOWNS = 16 };
 
 /* y = at_zero + slope x, both >= 0; residual: the largest relative one of the points. */
 struct fit_line {

@@ -93,7 +93,8 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
                                      .multiply = n->code.multiply * factor,
                                      .fetch = n->code.fetch * factor,
                                      .add_latency = n->code.add_latency * factor,
-                                     .multiply_latency = n->code.multiply_latency * factor};
+                                     .multiply_latency = n->code.multiply_latency * factor,
+                                     .window = n->code.window};
         return;
     default:
         break;

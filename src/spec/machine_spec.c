@@ -171,8 +171,7 @@ static const struct field fields[] = {
      .min = 0, .max = 1e18, .fallback = "0 flop/s",
      .doc = "the same for the serial codes, the baselines of the speedup; 0: node.flop_rate"},
     {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1,
-     .max = 1e13,
-     .doc = "processor clock, for the cycle counts below"},
+     .max = 1e13, .doc = "processor clock, for the cycle counts below"},
     {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0,
      .max = 1e6, .fallback = "0 cycles", .doc = "time of one division"},
     {.key = "node.sqrt", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.sqrt_cycles), .min = 0,
@@ -183,9 +182,8 @@ static const struct field fields[] = {
      AT(node.instruction_cycles), .min = 0, .max = 1e6, .fallback = "0 cycles",
      .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
             "node.flop_rate tells that several are issued at once"},
-    /* Where the first is given, the others hold together with it for blocks of compiled code, in
-     * the place of node.instruction and node.flop_rate (machine/node_cost.h). Machine files that
-     * calibrate writes give them; no source states what a chain of additions takes elsewhere. */
+    /* Where the first is given, all hold for blocks of compiled code in the place of
+     * node.instruction and node.flop_rate (machine/node_cost.h). Only calibrate gives them. */
     {CODE_PRICE(issue),
      .doc = "programs made by mimdsim cc, finer: one instruction that waits for nothing, however "
             "wide; 0: node.instruction and node.flop_rate hold"},
@@ -200,9 +198,11 @@ static const struct field fields[] = {
     FINER(fetch, "a piece of a loop's code that has to be fetched (docs/compiler.md)"),
     FINER(add_latency, "a chain's addition that waits for something else; 0: node.code.chain"),
     FINER(multiply_latency, "a floating-point product in a chain; 0: four of node.code.step"),
+    {.key = "node.code.window", .kind = FIELD_REAL, AT(node.code.window), .min = 0, .max = 1e9,
+     .fallback = "0", .idle = machine_idle_without_code,
+     .doc = "floating-point instructions that can wait for earlier results at a time; 0: no limit"},
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
-     .max = 1,
-     .fallback = "0 s", .doc = "overhead of one call of a small operator"},
+     .max = 1, .fallback = "0 s", .doc = "overhead of one call of a small operator"},
     {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(node.copy_bandwidth), .min = 0, .max = 1e15, .fallback = "unlimited", .zero = "unlimited",
      .doc = "rate of memory copies by the program (packing)"},

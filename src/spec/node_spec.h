@@ -49,6 +49,7 @@ struct node_spec {
         double fetch; /* one piece of a loop's code that is fetched, 0: no bound */
         double add_latency;      /* addition that waits for something else than one, 0: chain */
         double multiply_latency; /* product that waits for what comes before, 0: 4 steps */
+        double window;           /* floating-point instructions that wait at a time, 0: no limit */
     } code;           /* programs compiled by `mimdsim cc`, finer [cycles] (node_cost.h) */
     double call_time;          /* overhead of one small operator call [s] */
     double copy_bandwidth;     /* memory copies [B/s] */

@@ -18,9 +18,9 @@ END
 
 # blocks FILE: how many counters its code has.
 blocks() { objdump -d "$1" | grep -c 'lea  *0x0(%r15),%r15'; }
-# entries FILE: how many entries its table has (struct block_entry, 44 bytes each).
+# entries FILE: how many entries its table has (struct block_entry, 52 bytes each).
 entries() {
-    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 44))
+    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 52))
 }
 
 @test "questions are answered by gcc" {

@@ -39,10 +39,11 @@ static void filters_to(const char *in, const char *expected)
 #define TABLE(first)                                                                               \
     "\t.pushsection mimdsim_blocks,\"ao?\",@progbits,.Lmimdsim" first "\n\t.balign 4\n"
 /* The last ten are those of the finer prices: instructions, each once, loads, whole numbers,
- * additions, products, a chain of four, blocks. */
-#define ENTRY(n, counts) "\t.long .Lmimdsim" n "-4-.,0\n\t.value " counts ",0\n"
-#define LOOP(n, counts)                                                                            \
-    "\t.long .Lmimdsim" n "-4-.,.Lmimdsim_t" n "-.Lmimdsim" n "+7\n\t.value " counts ",0\n"
+ * additions, products, a chain of four, blocks. Behind them comes the chain of one round. */
+#define ENTRY(n, counts) "\t.long .Lmimdsim" n "-4-.,0\n\t.value " counts ",0,0,0,0,0\n"
+#define LOOP(n, counts, once)                                                                      \
+    "\t.long .Lmimdsim" n "-4-.,.Lmimdsim_t" n "-.Lmimdsim" n "+7\n\t.value " counts "," once     \
+    ",0\n"
 #define END "\t.popsection\n"
 
 static void blocks_begin_at_labels_and_behind_branches_and_calls(void **state)
@@ -259,8 +260,8 @@ static void a_loop_has_its_chain(void **state)
                  "\taddsd\t%xmm1, %xmm0\n\taddq\t$1, %rax\n\tcmpq\t%rdx, %rax\n"
                  "\tjne\t.L3\n.Lmimdsim_t2:\n" ADD("3") "\tjne\t.L4\n" ADD("4") "\tret\n" TABLE("1")
                      ENTRY("1", "1,0,0,0,0,0,0,1,0,1,0,0,0,0,0,0,1")
-                     "\t.long 2,0\n\t.value 7,2,0,0,0,0,8,7,1,2,1,1,1,0,0,0,2,2\n"
-                     LOOP("2", "6,2,0,0,0,0,8,6,1,2,1,1,1,0,0,0,1")
+                     "\t.long 2,0\n\t.value 7,2,0,0,0,0,8,7,1,2,1,1,1,0,0,0,2,1,8,1,1,2\n"
+                     LOOP("2", "6,2,0,0,0,0,8,6,1,2,1,1,1,0,0,0,1", "1,8,1,1")
                      ENTRY("3", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
                      ENTRY("4", "1,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,1")
                              END);

@@ -32,7 +32,8 @@ static int loops_of(const char *body, struct said *said, int most)
         unsigned kind, entries;
         if (sscanf(s,
                    " .long %u,0\n .value "
-                   "%*u,%*u,%*u,%*u,%*u,%*u,%*u,%u,%u,%*u,%*u,%*u,%u,%u,%*u,%*u,%u,%u",
+                   "%*u,%*u,%*u,%*u,%*u,%*u,%*u,%u,%u,%*u,%*u,%*u,%u,%u,%*u,%*u,%u,%*u,%*u,%*u,%*u,"
+                   "%u",
                    &entries, &x.instructions, &x.loads, &x.flop, &x.cycle, &x.blocks, &kind) != 7)
             continue;
         x.entries = entries;

@@ -154,9 +154,10 @@ static void a_text_has_the_table_of_questions(void **state)
     struct text t = {0};
     read_toy(f, &l, "", false);
     lab_fill(&l, "before\n@questions@\nbehind @P@\n", &t);
-    assert_string_equal(t.s, "before\n| in answers.yaml | question | unit | your formula | your number |\n"
-                             "|---|---|---|---|--:|\n"
-                             "| rounds | How many rounds do 4 ranks take? | rounds | | |\nbehind 4\n");
+    assert_string_equal(
+        t.s, "before\n| in answers.yaml | question | unit | your formula | your number |\n"
+             "|---|---|---|---|--:|\n"
+             "| rounds | How many rounds do 4 ranks take? | rounds | | |\nbehind 4\n");
     text_free(&t);
 }
 

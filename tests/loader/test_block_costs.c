@@ -148,6 +148,31 @@ static void units_chains_and_code_have_prices(void **state)
     assert_int_equal(block_cost_ps(&c, &chain, 0, 1), 5900);
 }
 
+/* 3 additions, 2 of them late, and 9 cycles with 2 products are 5,900 ps from the beginning of a
+ * round to its end; of its 6 floating-point instructions only 24 are on their way at a time. */
+static void rounds_wait_for_places_of_those_before(void **state)
+{
+    (void)state;
+    struct node_cost c = {
+        .issue = 100, .chain = 900, .step = 300, .late = 350, .product = -100, .window = 24};
+    const struct block_counts round = {.issue = 11,
+                                       .add = 3,
+                                       .multiply = 2,
+                                       .sqrt = 1,
+                                       .once_flop = 3,
+                                       .once_cycle = 9,
+                                       .once_late = 2,
+                                       .once_product = 2};
+    assert_int_equal(block_cost_ps(&c, &round, 0, 1), 1180); /* 5,900 x 6 / (6 + 24) */
+    c.window = 6;
+    assert_int_equal(block_cost_ps(&c, &round, 0, 1), 2950);
+    /* Not known, and so large that what is issued takes longer. */
+    c.window = 0;
+    assert_int_equal(block_cost_ps(&c, &round, 0, 1), 1100);
+    c.window = 1e9;
+    assert_int_equal(block_cost_ps(&c, &round, 0, 1), 1100);
+}
+
 /* By hand, from the rule in block_costs.c: entries of 6 instructions, lines of 64 bytes. */
 static void loops_are_fetched_in_pieces(void **state)
 {
@@ -230,6 +255,12 @@ static void blocks_of_a_loop_take_the_same_bound(void **state)
     chained.chain_late = 3, chained.chain_product = 1;
     c.late = 100, c.product = -40;
     loop_costs(&chained, &c, 0, 18310);
+    /* and so is what it waits for within itself: 90 additions of 900 ps, 58 others beside 2
+     * divisions, 20 on their way */
+    chained.once_flop = 90, chained.add = 58;
+    c.window = 20;
+    loop_costs(&chained, &c, 0, 60750); /* 81,000 x 60 / 80 */
+    c.window = 0;
     /* without a price of loads each block stands alone */
     c.load = c.whole = 0;
     loop_costs(&chained, &c, 1000, 400);
@@ -294,6 +325,7 @@ int main(void)
         cmocka_unit_test(each_block_gets_its_cost),
         cmocka_unit_test(the_finer_prices_hold_where_there_are_some),
         cmocka_unit_test(units_chains_and_code_have_prices),
+        cmocka_unit_test(rounds_wait_for_places_of_those_before),
         cmocka_unit_test(loops_are_fetched_in_pieces),
         cmocka_unit_test(blocks_of_a_loop_take_the_same_bound),
         cmocka_unit_test(a_loop_that_does_not_fit_is_refused),

@@ -217,7 +217,8 @@ static void the_file_is_the_machine_that_was_fitted(void **state)
         struct calibration c = made_calibration(&r);
         c.has_code = round % 2;
         c.code = (struct code_rates){
-            .price = {0.25, 4, 0, 3, 1.5, 0.5, 0.375, 0.4, 0.6, 1.25, 3.5, 4.5}, .n = 0};
+            .price = {0.25, 4, 0, 3, 1.5, 0.5, 0.375, 0.4, 0.6, 1.25, 3.5, 4.5, 0.008},
+            .n = 0};
         const struct machine_spec m = read_back(&c, text, sizeof text);
         const struct machine_spec base = m, fitted = calibration_machine(&c, &base);
         const struct node_spec *n = &m.node, *f = &fitted.node;
@@ -232,6 +233,7 @@ static void the_file_is_the_machine_that_was_fitted(void **state)
             assert_true(n->code.root > 0 && n->code.root < 1e-5); /* 0 would be another thing */
             assert_true(n->code.add == 0.4 && n->code.multiply == 0.6 && n->code.fetch == 1.25);
             assert_true(n->code.add_latency == 3.5 && n->code.multiply_latency == 4.5);
+            assert_true(n->code.window == 125);
             assert_true(n->code.step == 1.5 && n->code.load == 0.5 && n->code.whole == 0.375);
         } else {
             assert_true(near(n->instruction_cycles, c.rates.instruction * c.clock, 1e-3));
@@ -313,7 +315,7 @@ static void rules_of_collectives_are_kept(void **state)
 /* ---- groups of prices */
 
 /* All numbers of a machine that a price may be, each another one. */
-enum { NUMBERS = 45 };
+enum { NUMBERS = 46 };
 
 static void numbers_of(struct machine_spec *m, double *at[NUMBERS], enum price_group group[NUMBERS])
 {
@@ -343,6 +345,7 @@ static void numbers_of(struct machine_spec *m, double *at[NUMBERS], enum price_g
         {&n->code.fetch, PRICE_CODE},
         {&n->code.add_latency, PRICE_CODE},
         {&n->code.multiply_latency, PRICE_CODE},
+        {&n->code.window, PRICES},
         {&n->clock, PRICES},
         {&s->send_overhead, PRICE_SEND},
         {&s->recv_overhead, PRICE_RECV},

@@ -135,7 +135,7 @@ static struct machine_spec machine(void)
                  .instruction_cycles = 10,
                  .call_time = 1e-8,
                  .copy_bandwidth = 1e9,
-                 .code = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+                 .code = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
         .network = {.hop_latency = 1e-6},
         .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .gap_per_byte = 1e-9}};
 }
@@ -163,6 +163,7 @@ static void each_price_follows_its_operation(void **state)
     const double issue[] = {c->issue, c->load, c->whole, c->add, c->multiply, c->fetch};
     const double wait[] = {c->div, c->root, c->chain, c->step, c->add_latency, c->multiply_latency};
     for (int i = 0; i < 6; i++) assert_true(near(issue[i], 4) && near(wait[i], 10));
+    assert_true(c->window == 1); /* so many at all times */
 }
 
 static void what_is_not_known_stays(void **state)
