@@ -18,7 +18,8 @@ struct netcheck_question {
     bool any_order;        /* arrivals agree as sets */
     /* the answer is the mean latency of messages from `warm` on, not the makespan */
     bool latency;
-    sim_ps warm, until; /* and born before `until`, 0: all */
+    sim_ps warm, until;  /* and born before `until`, 0: all */
+    sim_ps last;         /* out of netcheck_mean: the last arrival of these */
     double channel;      /* what the reference's channels add to the mean latency [cycles] */
     struct arena *arena; /* scratch */
     struct arena *rows;  /* of what the row keeps */

@@ -10,6 +10,10 @@ series="$MIMDSIM_SRCDIR/tests/data/net/series.json"
     works mimdsim netcheck "$series" --quiet --level packet
 }
 
+@test "traffic goes on until the last packet of the sample is there, however long that takes" {
+    works mimdsim netcheck "$MIMDSIM_SRCDIR/tests/data/net/overload.json" --quiet --level flit --within 1%
+}
+
 @test "a series whose answer is wrong fails" {
     sed 's/"plat_max": [0-9.]*/"plat_max": 99/; s/"plat_min": [0-9.]*/"plat_min": 90/; s/"plat": [0-9.]*/"plat": 95/' \
         "$series" > wrong.json
