@@ -19,10 +19,11 @@ struct load_curve {
 };
 
 /* load_curves_make: every machine x routing x level x traffic of the command line, (*n) of them in
- * a, in this order; nothing is simulated. Returns false with ERR_USAGE, ERR_NO_INPUT, ERR_DATA or
+ * a, in this order; nothing is simulated. Unless a size was asked for, o->bytes rises where links
+ * hold more messages than a run may have. Returns false with ERR_USAGE, ERR_NO_INPUT, ERR_DATA or
  * ERR_CONFIG for what cannot be run. */
-bool load_curves_make(const struct common *c, const struct load_options *o,
-                      struct load_curve **list, int *n, struct arena *a, struct err *e);
+bool load_curves_make(const struct common *c, struct load_options *o, struct load_curve **list,
+                      int *n, struct arena *a, struct err *e);
 
 /* load_curves_measure: all points and saturations that are not stored yet (all, with c->force), by
  * c->jobs threads (0: one for each processor), each point stored when it is known. Returns false

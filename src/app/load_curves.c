@@ -1,5 +1,6 @@
 /* load_curves.c - the curves of a command line, before anything is simulated (load_curve.h). */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "app/load_curve.h"
@@ -131,8 +132,8 @@ static bool curve_make(const struct making *k, struct load_curve *x)
     return load_begin(&x->question, recorded ? &x->recording : NULL, &x->series, k->a, k->e);
 }
 
-bool load_curves_make(const struct common *c, const struct load_options *o,
-                      struct load_curve **list, int *n, struct arena *a, struct err *e)
+static bool curves_of_size(const struct common *c, const struct load_options *o,
+                           struct load_curve **list, int *n, struct arena *a, struct err *e)
 {
     /* what is not asked for is the machine's own: one way */
     const int nrouting = o->nrouting ? o->nrouting : 1, nlevel = o->nlevel ? o->nlevel : 1;
@@ -153,4 +154,39 @@ bool load_curves_make(const struct common *c, const struct load_options *o,
         ++*n;
     }
     return true;
+}
+
+/* Whether one of the curves has more messages under way at its highest load than a run may have. */
+static bool is_crowded(const struct load_options *o, const struct load_curve *list, int n,
+                       double margin)
+{
+    for (int i = 0; i < n; i++) {
+        const struct load_curve *x = &list[i];
+        double top = o->nrate > 0 ? o->rate[o->nrate - 1] : 0;
+        if (x->question.recording) continue;
+        if (o->saturation) top = fmax(top, load_first_probe(&x->series));
+        if (margin * load_least_messages(&x->question, top) > o->most) return true;
+    }
+    return false;
+}
+
+/* Fast links hold thousands of small messages. Then larger ones, unless a size was asked for: the
+ * smallest of which a run may be lengthened twice, as steady states need; the same for all curves
+ * of a picture. */
+bool load_curves_make(const struct common *c, struct load_options *o, struct load_curve **list,
+                      int *n, struct arena *a, struct err *e)
+{
+    enum { LONGER = 4, LARGEST = 1 << 20 };
+    bool ok = curves_of_size(c, o, list, n, a, e);
+    if (!ok || o->sized || !is_crowded(o, *list, *n, 1)) return ok;
+    while (ok && o->bytes < LARGEST && is_crowded(o, *list, *n, LONGER)) {
+        o->bytes *= 2;
+        ok = curves_of_size(c, o, list, n, a, e);
+    }
+    if (ok && !c->quiet)
+        fprintf(stderr,
+                "mimdsim: messages of %lld B, since a run of %d smaller ones would not get through "
+                "these networks; --size chooses others\n",
+                (long long)o->bytes, o->most);
+    return ok;
 }

@@ -11,7 +11,7 @@
 #include "study/load.h"
 
 /* Loads between LOW and HIGH without a step; a message of a cache line; a run of some seconds. */
-enum { POINTS = 20, DEFAULT_BYTES = 64, DEFAULT_MESSAGES = 400000 };
+enum { POINTS = 20, DEFAULT_MESSAGES = 400000 };
 
 /* "a,b(1,2),c" at the commas outside of brackets, into words of `a`. */
 static bool split(const char *option, const char *text, const char **word, int *n, int most,
@@ -118,7 +118,7 @@ static bool size_of(const char *text, int64_t *bytes, struct err *e)
 {
     double x = 0;
     char why[160] = "";
-    *bytes = DEFAULT_BYTES;
+    *bytes = LOAD_BYTES;
     if (!text) return true;
     if (!units_parse(text, UNIT_BYTES, &x, why, sizeof why))
         return err_set(e, ERR_USAGE, "--size: '%.40s': %s", text, why);
@@ -158,6 +158,7 @@ bool load_options_take(int *argc, char **argv, struct load_options *o, struct ar
         !whole(argc, argv, "--messages", LOAD_LEAST_MESSAGES, LOAD_MOST_MESSAGES, DEFAULT_MESSAGES,
                &most, e))
         return false;
+    o->sized = size != NULL;
     o->seed = (uint64_t)seed;
     o->most = (int)most;
     return split("--traffic", traffic ? traffic : "uniform", o->traffic, &o->ntraffic,

@@ -4,7 +4,7 @@
 
 #include "app/verb.h"
 
-enum { LOAD_MOST_WORDS = 64, LOAD_MOST_RATES = 256 };
+enum { LOAD_MOST_WORDS = 64, LOAD_MOST_RATES = 256, LOAD_BYTES = 64 /* unless asked for */ };
 
 struct load_options {
     int ntraffic, nrouting, nlevel, nrate; /* nrouting, nlevel 0: the machine's own */
@@ -12,6 +12,7 @@ struct load_options {
     enum network_level level[LEVELS];
     double rate[LOAD_MOST_RATES]; /* rising, each once */
     int64_t bytes;
+    bool sized; /* `bytes` was asked for */
     uint64_t seed;
     double within;
     int most;

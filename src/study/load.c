@@ -201,6 +201,11 @@ static bool is_enough(const struct load_question *q, const struct attempt *x, bo
            (probe && fabs(s->mean - LOAD_CRITERION * q->empty_ps) > s->half);
 }
 
+double load_least_messages(const struct load_question *q, double offered)
+{
+    return LEAST_LATENCIES * q->empty_ps / q->cycle_ps * rate_of(q, offered);
+}
+
 /* The length of the first run: enough messages, and time enough for them to get through; no more
  * messages than are permitted. */
 static bool first_length(const struct load_question *q, double offered, double *cycles,
@@ -217,8 +222,9 @@ static bool first_length(const struct load_question *q, double offered, double *
     if (*cycles < least)
         return err_set(e, ERR_CONFIG,
                        "load %g needs at least %.0f messages, to cross the network %d times; at "
-                       "most %d are allowed: allow more (--messages), or ask for lower loads",
-                       offered, ceil(least * rate), LEAST_LATENCIES, q->most);
+                       "most %d are allowed: allow more (--messages), or ask for larger ones "
+                       "(--size) or lower loads",
+                       offered, ceil(load_least_messages(q, offered)), LEAST_LATENCIES, q->most);
     if (*cycles * q->cycle_ps > (double)PS_LAST / 4)
         return err_set(e, ERR_CONFIG, "load %g takes longer than the largest simulated time",
                        offered);
@@ -235,10 +241,10 @@ static void finish(const struct load_question *q, struct attempt *x, bool enough
     const bool rising = x->judged && is_rising(&x->steady);
     p->mean_ps = p->half_ps = p->lag = NAN;
     p->p50_ps = p->p99_ps = p->max_ps = -1;
-    p->status = x->deadlock                              ? LOAD_DEADLOCK
+    p->status = x->deadlock                             ? LOAD_DEADLOCK
                 : !x->judged || (rising && beyond <= 0) ? LOAD_UNSTABLE
-                : enough                                 ? LOAD_OK
-                                                         : LOAD_WIDE;
+                : enough                                ? LOAD_OK
+                                                        : LOAD_WIDE;
     if (p->status == LOAD_DEADLOCK) text_copy(p->text, sizeof p->text, x->text);
     if (p->status == LOAD_OK || p->status == LOAD_WIDE) fill_latency(x, p);
     if (p->status == LOAD_WIDE && rising) p->half_ps = fmax(p->half_ps, beyond);

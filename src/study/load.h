@@ -72,6 +72,12 @@ bool load_begin(struct load_question *q, struct load_recording *recording, struc
 bool load_measure(const struct load_question *q, double offered, bool probe, struct load_point *p,
                   struct err *e);
 
+/* load_least_messages: how many messages the shortest run at `offered` has that means something. */
+double load_least_messages(const struct load_question *q, double offered);
+
+/* load_first_probe: the load that load_saturate asks for first. */
+double load_first_probe(const struct load_series *s);
+
 /* load_side: whether a point lies above saturation (1), below (-1), or cannot be told (0). */
 int load_side(const struct load_point *p, double empty_ps);
 

@@ -25,10 +25,15 @@ static bool ask(struct load_series *s, double load, load_probe_fn *probe, void *
     return true;
 }
 
+/* The bound of the routes is where most networks give in, or a little above in a finite run. */
+double load_first_probe(const struct load_series *s)
+{
+    return isfinite(s->bound) && s->bound < 0.9 ? 1.05 * s->bound : 1;
+}
+
 bool load_saturate(struct load_series *s, load_probe_fn *probe, void *context, struct err *e)
 {
-    /* The bound of the routes is where most networks give in, or a little above in a finite run. */
-    double low = 0, high = isfinite(s->bound) && s->bound < 0.9 ? 1.05 * s->bound : 1;
+    double low = 0, high = load_first_probe(s);
     int side = 0;
     s->probes = 0;
     if (!ask(s, high, probe, context, &side, e)) return false;

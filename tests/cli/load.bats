@@ -193,3 +193,11 @@ END
 78#buffer#small.yaml --set machine.network.buffer=1
 END
 }
+
+@test "links that hold many messages are measured with larger ones, unless a size is asked for" {
+    works mimdsim load what-if-torus --no-saturation --rates 0.1 --messages 10000 --level link
+    [[ "$stderr" == *"messages of 16384 B"*"--size chooses others"* ]]
+    sql_is mimdsim.db "SELECT message_bytes || ' ' || status FROM load_series JOIN load_point USING (series)" "16384 ok"
+    fails_with 78 mimdsim load what-if-torus --no-saturation --rates 0.1 --messages 10000 --level link --size 64B
+    [[ "$stderr" == *"larger ones (--size)"* ]]
+}
