@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "hosts/hosts_copy.h"
 #include "run/campaign_hosts.h"
+#include "store/run_entries.h"
 #include "store/build.h"
 #include "study/level_choice.h"
 
@@ -166,6 +167,7 @@ static bool spread_one(const struct job *j, const struct run_spec *run,
     err_clear(&why);
     own.hosts = &j->h;
     own.job_run = number;
+    own.sums = !run_entries_ranks(run->nrank); /* what is not stored is not sent */
     /* What cannot be made is refused by all in the same words. */
     if (!run_sharing(run, &own, cache, arena, &result, &why)) {
         result = run_refused(&why);

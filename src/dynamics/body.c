@@ -63,10 +63,10 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     if (REAL_BITS == 64 && REAL_LANES == 1 && m->constants) return m->constants;
     struct body *b = TAKE(a, m->nbody, struct body);
-    for (int i = 0; i < m->nbody; i++) {
-        if (i > 0) b[i] = b[i - 1];
-        if (i == 0 || !same_inertia(m, i - 1, i)) make_inertia(m, i, &b[i]);
-        if (i == 0 || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i]);
+    for (int i = m->first; i < m->end; i++) {
+        if (i > m->first) b[i] = b[i - 1];
+        if (i == m->first || !same_inertia(m, i - 1, i)) make_inertia(m, i, &b[i]);
+        if (i == m->first || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i]);
         body_seat(m, i, &b[i]);
     }
     return b;

@@ -40,9 +40,9 @@ struct joint_cost {
 const struct joint_cost *joint_cost_of(enum model_joint joint);
 const struct joint_cost *body_cost(const struct body *b);
 
-/* bodies_make: the constants of m's bodies (nbody); equal neighbours cost nothing. In space and in
- * double they are the model's own, made by system_prepare; otherwise made in `a`. A scene in the
- * plane must be planar, at least nearly. */
+/* bodies_make: the constants of m's bodies (nbody), of those that are here; equal neighbours cost
+ * nothing. In space and in double they are the model's own, made by system_prepare; otherwise made
+ * in `a`. A scene in the plane must be planar, at least nearly. */
 const struct body *bodies_make(const struct model *m, struct arena *a);
 
 /* bodies_alike: whether bodies i and j of m have the same joint and axes (-1: the base). */

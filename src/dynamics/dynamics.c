@@ -7,7 +7,7 @@
 static bool all_revolute(const struct model *m)
 {
     if (m->general_joints) return false;
-    for (int i = 0; i < m->nbody; i++)
+    for (int i = m->first; i < m->end; i++)
         if (m->body[i].joint != JOINT_REVOLUTE) return false;
     return true;
 }
@@ -45,7 +45,8 @@ void dynamics_load(struct dynamics *d, const struct state *s)
         return;
     }
     if (!d->load) d->load = TAKE(d->arena, size_product(6, d->nbody), real);
-    for (int i = 0; i < d->nbody; i++) body_load(&d->body[i], s->fext + 6 * i, d->load + 6 * i);
+    for (int i = d->model->first; i < d->model->end; i++)
+        body_load(&d->body[i], s->fext + 6 * i, d->load + 6 * i);
 }
 
 /* The poses that all later calls refer to. */

@@ -39,6 +39,14 @@ struct dynamics_totals {
 
 enum { POSE_NUMBERS = 24 };
 
+/* The neighbours of a part of a chain (model_part): numbers from and for the one towards the tip or
+ * the base. Each returns false when the neighbour does not answer. */
+struct part_ends {
+    const void *context;
+    bool (*take)(const void *context, bool tip, double *x, int n);
+    bool (*give)(const void *context, bool tip, const double *x, int n);
+};
+
 struct held; /* a model in a state, in some precision; opaque */
 
 struct dynamics_type {
@@ -48,6 +56,14 @@ struct dynamics_type {
     /* inverse: tau (nu) for s->qdd, loops cut open: what actuators and springs do together. */
     void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch,
                     double *tau, struct work *w);
+
+    /* inverse_part: the same of a part of a chain of revolute joints, all parts together: how the
+     * body before its first one moves is taken from the side of the base, how its last one moves
+     * given to that of the tip, and forces go the other way. tau and work are those of the bodies
+     * that are here, and the same bits as inverse has for them. False: a neighbour is silent. */
+    bool (*inverse_part)(const struct model *m, const struct state *s,
+                         const struct part_ends *ends, struct arena *scratch, double *tau,
+                         struct work *w);
 
     /* hold, inverse_held: inverse for many accelerations qdd (nu) of one state: bodies' constants
      * and the state in this precision are made once, in `a`; no work is counted. */

@@ -1,7 +1,9 @@
 /* dynamics_type.c - this precision's table of serial algorithms, double in and out. */
+#include "base/check.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/dynamics_table.h"
 #include "dynamics/integrate.h"
+#include "dynamics/revolute.h"
 #include "dynamics/work_count.h"
 
 /* A model's numbers in this precision.
@@ -11,11 +13,13 @@ struct problem {
     real *q, *u, *ud, *tau;
 };
 
-/* Inputs are rounded once to this precision; quad sees the doubles exactly. */
-static real *to_real(struct arena *a, const double *x, int n)
+/* Inputs are rounded once to this precision; quad sees the doubles exactly. A part of a model has a
+ * number for each of its bodies. */
+static real *to_real(const struct model *m, struct arena *a, const double *x, int n)
 {
     real *y = TAKE(a, n, real);
-    for (int i = 0; i < n; i++) y[i] = (real)x[i];
+    const bool part = m->end - m->first < m->nbody;
+    for (int i = part ? m->first : 0; i < (part ? m->end : n); i++) y[i] = (real)x[i];
     return y;
 }
 
@@ -27,10 +31,10 @@ static struct problem problem_take(const struct model *m, const struct state *s,
     dynamics_load(p.d, s);
     /* Turning loads into internal axes is part of the algorithm's cost. */
     work_count_load(p.d, w);
-    p.q = to_real(a, s->q, m->nq);
-    p.u = to_real(a, s->qd, m->nu);
-    p.ud = to_real(a, s->qdd, m->nu);
-    p.tau = to_real(a, s->tau, m->nu);
+    p.q = to_real(m, a, s->q, m->nq);
+    p.u = to_real(m, a, s->qd, m->nu);
+    p.ud = to_real(m, a, s->qdd, m->nu);
+    p.tau = to_real(m, a, s->tau, m->nu);
     return p;
 }
 
@@ -52,6 +56,21 @@ static void inverse(const struct model *m, const struct state *s, struct arena *
     rnea(p.d, p.q, p.u, p.ud, out, w);
     to_double(tau, out, m->nu);
     arena_release(scratch, mark);
+}
+
+static bool inverse_part(const struct model *m, const struct state *s,
+                         const struct part_ends *ends, struct arena *scratch, double *tau,
+                         struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch, w);
+    real *out = TAKE(scratch, m->nu, real);
+    CHECK(p.d->revolute && m->is_chain);
+    p.d->at_rest = s->at_rest;
+    const bool ok = rnea_revolute_part(p.d, p.q, p.u, p.ud, ends, out, w);
+    for (int i = m->first; i < m->end; i++) tau[i] = (double)out[i];
+    arena_release(scratch, mark);
+    return ok;
 }
 
 /* A problem that is solved again and again. */
@@ -236,6 +255,7 @@ const struct dynamics_type dynamics_type_here = {
     .name = REAL_BITS == 32 ? "float" : REAL_BITS == 64 ? "double" : "quad",
     .epsilon = (double)REAL_EPSILON,
     .inverse = inverse,
+    .inverse_part = inverse_part,
     .hold = hold,
     .inverse_held = inverse_held,
     .forward = forward,

@@ -6,7 +6,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
 {
     /* From the rounded constants, so that both texts compute with the same numbers. */
     struct revolute *out = TAKE(a, m->nbody, struct revolute);
-    for (int i = 0; i < m->nbody; i++) {
+    for (int i = m->first; i < m->end; i++) {
         struct revolute *r = &out[i];
         const real *j = b[i].jc, half = REAL(0.5);
         for (int k = 0; k < 9; k++) r->e[k] = b[i].tree.r[k];
@@ -30,8 +30,9 @@ void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct 
     if (!w) return;
     /* Bodies on the base save the part that concerns their parent. */
     uint64_t children = 0;
-    for (int i = 0; i < d->nbody; i++) children += d->revolute[i].parent >= 0;
-    const uint64_t n = (uint64_t)d->nbody;
+    const struct model *m = d->model;
+    for (int i = m->first; i < m->end; i++) children += d->revolute[i].parent >= 0;
+    const uint64_t n = (uint64_t)(m->end - m->first);
     w->flop += n * (uint64_t)cost.body + children * (uint64_t)cost.child;
     w->div += n * (uint64_t)cost.div;
     w->trig += 2 * n;

@@ -26,6 +26,12 @@ bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *
                   struct work *w);
 void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w);
 
+/* rnea_revolute_part: of the bodies of d->model that are here, see dynamics_table.h. False: a
+ * neighbour is silent. */
+struct part_ends;
+bool rnea_revolute_part(struct dynamics *d, const real *q, const real *u, const real *ud,
+                        const struct part_ends *ends, real *tau, struct work *w);
+
 /* What a fast path executes [flop]: for each body, for each that hangs on another one besides. */
 struct revolute_cost {
     int body, child, div; /* div: divisions a body */

@@ -1,5 +1,6 @@
 /* rnea_revolute.c - inverse dynamics of all-revolute systems: 216 flops a body besides sine and
  * cosine. */
+#include "dynamics/dynamics_table.h"
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 
@@ -108,56 +109,167 @@ static inline void hand_down(const struct revolute *b, const struct load *c, str
     vec3_add(p->n, n);
 }
 
-/* Both sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
-static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const real *u,
-                         const real *ud, real *tau)
+/* Where the sweeps of a chain or tree lay their records: arrays over all bodies, of which those of
+ * a part are touched. */
+struct sweep {
+    real *sine, *cosine;
+    struct load *load;
+    struct motion *motion;
+    unsigned slots;
+};
+
+static struct sweep sweep_of(const struct dynamics *d)
 {
-    int n = d->nbody;
+    const int n = d->nbody;
+    struct sweep s = {.sine = d->scratch, .cosine = d->scratch + n};
+    s.load = (struct load *)(s.cosine + n);
+    s.motion = (struct motion *)(s.load + n);
     /* a chain needs only the last body's motion: two slots */
-    unsigned slots = d->model->is_chain ? 1u : ~0u;
+    s.slots = d->model->is_chain ? 1u : ~0u;
+    return s;
+}
+
+/* The base has no velocity, only an acceleration with -g in it (physics 1.6). */
+static struct motion base_of(const struct dynamics *d, bool at_rest)
+{
     struct motion base = {{0}, {0}, {0}, {0}};
-    real *sine = d->scratch, *cosine = sine + n;
-    struct load *load = (struct load *)(cosine + n);
-    struct motion *motion = (struct motion *)(load + n);
-    /* The base has no velocity, only an acceleration with -g in it (physics 1.6). */
     vec3_copy(base.al, d->base);
     vec3_copy(base.a, d->base + 3);
     if (!at_rest) mat3_skew(base.k, base.al);
-    /* All angles in one loop that compilers turn into vectors. */
-    angle_sincos_batch(n, q, sine, cosine);
-    for (int i = 0; i < n; i++) {
+    return base;
+}
+
+/* All angles in one loop that compilers turn into vectors. */
+static void angles(const struct dynamics *d, const struct sweep *s, const real *q)
+{
+    const int first = d->model->first, n = d->model->end - first;
+    angle_sincos_batch(n, q + first, s->sine + first, s->cosine + first);
+}
+
+/* Base to tip; `before`: of the base, or of the body before a part. Called with a constant
+ * `at_rest`, so that each case is compiled alone. */
+static inline void sweep_up(struct dynamics *d, const struct sweep *s, bool at_rest,
+                            const struct motion *before, const real *u, const real *ud)
+{
+    const int first = d->model->first, end = d->model->end;
+    for (int i = first; i < end; i++) {
         const struct revolute *b = &d->revolute[i];
-        const struct motion *p = b->parent < 0 ? &base : &motion[(unsigned)b->parent & slots];
-        struct motion *c = &motion[(unsigned)i & slots];
-        mat3_turn_z(load[i].r, b->e, sine[i], cosine[i]);
+        const struct motion *p =
+            b->parent < first ? before : &s->motion[(unsigned)b->parent & s->slots];
+        struct motion *c = &s->motion[(unsigned)i & s->slots];
+        struct load *load = &s->load[i];
+        mat3_turn_z(load->r, b->e, s->sine[i], s->cosine[i]);
         if (at_rest) {
-            carry_at_rest(b, load[i].r, ud[i], p, c);
-            newton_euler_at_rest(b, c, load[i].f, load[i].n);
+            carry_at_rest(b, load->r, ud[i], p, c);
+            newton_euler_at_rest(b, c, load->f, load->n);
         } else {
-            carry(b, load[i].r, u[i], ud[i], p, c);
-            newton_euler(b, c, load[i].f, load[i].n);
+            carry(b, load->r, u[i], ud[i], p, c);
+            newton_euler(b, c, load->f, load->n);
         }
         if (d->load) {
-            vec3_sub(load[i].n, d->load + 6 * i);
-            vec3_sub(load[i].f, d->load + 6 * i + 3);
+            vec3_sub(load->n, d->load + 6 * i);
+            vec3_sub(load->f, d->load + 6 * i + 3);
         }
     }
-    /* (2.4), (2.5): tip to base; the joint takes the moment about its z. */
-    for (int i = n - 1; i >= 0; i--) {
+}
+
+/* (2.4), (2.5): tip to base; the joint takes the moment about its z. */
+static inline void sweep_down(const struct dynamics *d, const struct sweep *s, real *tau)
+{
+    const int first = d->model->first;
+    for (int i = d->model->end - 1; i >= first; i--) {
         const struct revolute *b = &d->revolute[i];
-        tau[i] = load[i].n[2];
-        if (b->parent >= 0) hand_down(b, &load[i], &load[b->parent]);
+        tau[i] = s->load[i].n[2];
+        if (b->parent >= first) hand_down(b, &s->load[i], &s->load[b->parent]);
     }
 }
 
 /* Two cases compiled apart, at rest and in motion. */
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
-                   struct work *w)
+static void up(struct dynamics *d, const struct sweep *s, const struct motion *before,
+               const real *u, const real *ud)
+{
+    if (d->at_rest) sweep_up(d, s, true, before, u, ud);
+    else sweep_up(d, s, false, before, u, ud);
+}
+
+static void count(const struct dynamics *d, struct work *w)
 {
     const int body = d->at_rest ? MAT3_TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP
                                 : MAT3_TURN_FLOP + CARRY_FLOP + NEWTON_EULER_FLOP;
-    if (d->at_rest) sweep(d, true, q, u, ud, tau);
-    else sweep(d, false, q, u, ud, tau);
     const int load = d->load ? SCREW_ADD_FLOP : 0;
     revolute_count(d, (struct revolute_cost){.body = body + load, .child = HAND_DOWN_FLOP}, w);
+}
+
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau,
+                   struct work *w)
+{
+    const struct sweep s = sweep_of(d);
+    const struct motion base = base_of(d, d->at_rest);
+    angles(d, &s, q);
+    up(d, &s, &base, u, ud);
+    sweep_down(d, &s, tau);
+    count(d, w);
+}
+
+/* --- a part of a chain ------------------------------------------------------------------------ */
+
+/* What crosses an end, as doubles: a motion, and the force and moment of a load. */
+enum { MOTION_NUMBERS = sizeof(struct motion) / sizeof(real), LOAD_NUMBERS = 6 };
+
+static bool take_motion(const struct part_ends *ends, struct motion *m)
+{
+    double x[MOTION_NUMBERS];
+    real *to = (real *)m;
+    if (!ends->take(ends->context, false, x, MOTION_NUMBERS)) return false;
+    for (int k = 0; k < MOTION_NUMBERS; k++) to[k] = (real)x[k];
+    return true;
+}
+
+static bool give_motion(const struct part_ends *ends, const struct motion *m)
+{
+    double x[MOTION_NUMBERS];
+    const real *from = (const real *)m;
+    for (int k = 0; k < MOTION_NUMBERS; k++) x[k] = (double)from[k];
+    return ends->give(ends->context, true, x, MOTION_NUMBERS);
+}
+
+/* What hand_down adds to a body in another part. */
+static bool give_load(const struct part_ends *ends, const struct revolute *b, const struct load *c)
+{
+    real part[LOAD_NUMBERS];
+    double x[LOAD_NUMBERS];
+    mat3_mul_vec(part, c->r, c->f);
+    mat3_mul_vec(part + 3, c->r, c->n);
+    vec3_cross_add(part + 3, b->t, part);
+    for (int k = 0; k < LOAD_NUMBERS; k++) x[k] = (double)part[k];
+    return ends->give(ends->context, false, x, LOAD_NUMBERS);
+}
+
+static bool take_load(const struct part_ends *ends, struct load *p)
+{
+    double x[LOAD_NUMBERS];
+    if (!ends->take(ends->context, true, x, LOAD_NUMBERS)) return false;
+    for (int k = 0; k < 3; k++) {
+        p->f[k] += (real)x[k];
+        p->n[k] += (real)x[3 + k];
+    }
+    return true;
+}
+
+bool rnea_revolute_part(struct dynamics *d, const real *q, const real *u, const real *ud,
+                        const struct part_ends *ends, real *tau, struct work *w)
+{
+    const struct model *m = d->model;
+    const struct sweep s = sweep_of(d);
+    const int last = m->end - 1;
+    struct motion before = base_of(d, d->at_rest);
+    angles(d, &s, q); /* while the others are not yet here */
+    if (m->first > 0 && !take_motion(ends, &before)) return false;
+    up(d, &s, &before, u, ud);
+    if (m->end < m->nbody && !(give_motion(ends, &s.motion[(unsigned)last & s.slots]) &&
+                               take_load(ends, &s.load[last])))
+        return false;
+    sweep_down(d, &s, tau);
+    count(d, w);
+    return m->first == 0 || give_load(ends, &d->revolute[m->first], &s.load[m->first]);
 }

@@ -36,7 +36,8 @@ void work_count_springs(const struct dynamics *d, struct work *w)
 void work_count_load(const struct dynamics *d, struct work *w)
 {
     if (!w || !d->load) return;
-    for (int i = 0; i < d->nbody; i++) w->flop += (uint64_t)body_load_flops(&d->body[i]);
+    for (int i = d->model->first; i < d->model->end; i++)
+        w->flop += (uint64_t)body_load_flops(&d->body[i]);
 }
 
 /* rnea_full, term by term in its order. */

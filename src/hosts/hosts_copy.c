@@ -53,7 +53,7 @@ bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes)
 }
 
 /* On process 0 alone, which tells the others what follows from it. */
-bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n)
+static bool reduce(const struct hosts *h, int tag, enum hosts_reduction how, int64_t *value, int n)
 {
     int64_t other[MOST_SUMS];
     CHECK(n <= MOST_SUMS);
@@ -61,7 +61,24 @@ bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n)
     if (h->rank > 0) return hosts_copy_out(h, 0, tag, value, bytes);
     for (int i = 1; i < h->size; i++) {
         if (!hosts_copy_in(h, i, tag, other, bytes)) return false;
-        for (int k = 0; k < n; k++) value[k] += other[k];
+        for (int k = 0; k < n; k++)
+            if (how == HOSTS_SUM) value[k] += other[k];
+            else if (other[k] > value[k]) value[k] = other[k];
     }
     return true;
+}
+
+bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n)
+{
+    return reduce(h, tag, HOSTS_SUM, value, n);
+}
+
+bool hosts_largest(const struct hosts *h, int tag, int64_t *value, int n)
+{
+    return reduce(h, tag, HOSTS_LARGEST, value, n);
+}
+
+bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n)
+{
+    return hosts_sum(h, tag, value, n) && hosts_tell(h, tag, value, (size_t)n * sizeof *value);
 }

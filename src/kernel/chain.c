@@ -45,7 +45,7 @@ static int *split(const unsigned char *size, int n, int nrank, bool balanced, st
 {
     int *first = TAKE(a, nrank + 1, int);
     if (nrank > n) return first;
-    for (int k = 0; k <= nrank; k++) first[k] = k * (n / nrank) + (k < n % nrank ? k : n % nrank);
+    for (int k = 0; k <= nrank; k++) first[k] = kernel_block(n, nrank, k);
     if (!balanced) return first;
     /* Cut where the sum of weights passes k/nrank of the total; half a body's weight rounds to the
      * nearer side. The bound on i leaves one body for each rank that is still to come. Integers, so
@@ -73,7 +73,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
         (struct row_layout){.nrow = n, .nrank = nrank, .size = size, .interface = interface};
     /* A spring that is treated linearly implicitly makes all six components of its joint's force
      * unknown (physics 9.0): a row of order 6. Any other joint has one unknown per constraint. */
-    for (int i = 0; i < n; i++) {
+    for (int i = model->first; i < model->end; i++) {
         const bool soft = spring_resistance(&s->body[i], implicit_step(job)) > 0;
         size[i] = (unsigned char)(soft ? SPACE : SPACE - s->body[i].d);
         if (size[i] > s->layout.largest) s->layout.largest = size[i];
@@ -91,7 +91,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
 }
 
 void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank,
-                 bool edge, bool forces)
+                 bool edge, bool forces, bool once)
 {
     const struct chain_shared *s = job->shared;
     const int n = job->model->nbody, lo = s->layout.first[rank], hi = s->layout.first[rank + 1];
@@ -110,8 +110,9 @@ void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job
     ch->h = CARVE(c, moving, real);
     ch->v = CARVE(c, moving, real);
     ch->b = CARVE(c, moving, real);
-    ch->a = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
-    ch->f = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
+    const bool shared = once && moving > 0;
+    ch->a = shared ? ch->b : CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
+    ch->f = shared ? ch->h : CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
 }
 
 void chain_load(struct chain *ch)
@@ -218,7 +219,7 @@ static void scan_up(struct chain *ch, real *x, int tag)
     /* Bodies of the right neighbour: with one it takes its value from the scan itself. */
     const int next = k + 1 < P ? ch->shared->layout.first[k + 2] - ch->hi : 0;
     const int shift = TAG_SHIFT + tag / TAG_STEP;
-    real end[SPACE], before[SPACE];
+    real end[SPACE];
     /* The first scan at these coordinates builds the composites, all later ones only use them. */
     if (first) begin_composites(ch);
     end_of_block(ch, x, end);
@@ -227,14 +228,14 @@ static void scan_up(struct chain *ch, real *x, int tag)
     ch->composed = true;
     /* A right neighbour with one body has all that it needs from the scan. */
     if (next > 1) comm_send(c, k + 1, shift, end, (int64_t)sizeof end);
+    /* The last body's value comes from the scan; the sweep stops before it. */
+    screw_copy(chain_at(ch, x, ch->hi - 1), end);
     if (m > 1 && k > 0) {
-        comm_recv(c, k - 1, shift, before, (int64_t)sizeof before);
-        sweep_up(ch, x, before, ch->lo, ch->hi - 1);
+        comm_recv(c, k - 1, shift, end, (int64_t)sizeof end); /* where the block before ends */
+        sweep_up(ch, x, end, ch->lo, ch->hi - 1);
     } else if (m > 1) {
         sweep_up(ch, x, x, ch->lo + 1, ch->hi - 1);
     }
-    /* The last body's value comes from the scan; the sweep stopped before it. */
-    screw_copy(chain_at(ch, x, ch->hi - 1), end);
     chain_report(ch);
 }
 
@@ -306,7 +307,7 @@ void chain_acceleration(struct chain *ch, const real *ud)
     const size_t size = (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real);
     /* Sources of the recurrence: b_i + H_i u'_i (physics 2.2). */
     if (ch->job->omit.velocity) memset(ch->a, 0, size);
-    else memcpy(ch->a, ch->b, size);
+    else if (ch->a != ch->b) memcpy(ch->a, ch->b, size);
     for (int i = ch->lo; i < ch->hi && ud; i++) {
         const struct body *b = &ch->shared->body[i];
         subspace_h(&chain_pose(ch, i)->s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));

@@ -49,10 +49,11 @@ struct chain {
 struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a);
 
 /* chain_carve: room for rank `rank`'s share; `edge`: with a pose for the right neighbour's first
- * body; `forces`: accelerations and forces will be wanted, not only velocities. The scan's room is
- * the caller's to carve, so that it can be shared. */
+ * body; `forces`: accelerations and forces will be wanted, not only velocities; `once`: each of the
+ * three is computed once, so that accelerations take the room of the bias and forces that of the
+ * joint velocities. The scan's room is the caller's to carve, so that it can be shared. */
 void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank,
-                 bool edge, bool forces);
+                 bool edge, bool forces, bool once);
 
 /* chain_load: coordinates and rates of own bodies from the job's state. */
 void chain_load(struct chain *ch);

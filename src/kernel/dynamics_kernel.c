@@ -115,12 +115,12 @@ static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 static void chain_inverse_carve(struct chain_inverse *v, struct carve *c,
                                 const struct kernel_job *job, int rank)
 {
-    chain_carve(&v->chain, c, job, rank, false, true);
+    chain_carve(&v->chain, c, job, rank, false, true, true);
     scan_carve(&v->chain.scan, c, v->chain.dense, job->spec->kernel.composites_incoming, rank,
                job->nrank);
     const int nu = chain_nu(v->chain.shared, v->chain.lo, v->chain.hi);
-    v->ud = CARVE(c, nu, real);
-    v->tau = CARVE(c, nu, real);
+    /* The forces are written when the accelerations have been used. */
+    v->ud = v->tau = CARVE(c, nu, real);
 }
 
 /* Pieces scan by pointer jumping, whose room is part of the tree's own. */

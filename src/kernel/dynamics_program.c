@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "kernel/divided.h"
 #include "kernel/omission.h"
 #include "kernel/references.h"
 #include "kernel/trust.h"
@@ -55,23 +56,34 @@ extern const struct program_type inverse_program; /* below */
 
 /* Of 10^7 bodies, asked for by a line of text, none is made when they cannot fit: making them takes
  * minutes, and the memory of everybody else. Files are as large as their models. */
-static bool fits_in_memory(const struct program_run *r, struct err *e)
+static bool fits_in_memory(const struct program_run *r, const struct run_part *part, struct err *e)
 {
     const struct model_spec *m = &r->spec.model;
     if (m->generator == MODEL_URDF || m->generator == MODEL_VECTOR) return true;
     const int each = r->type == &inverse_program ? LEAST_BODY_BYTES : LEAST_FORWARD_BODY_BYTES;
+    const int n = !part ? m->nbody
+                        : kernel_block(m->nbody, r->spec.nrank, part->end) -
+                              kernel_block(m->nbody, r->spec.nrank, part->first);
     char what[64];
-    snprintf(what, sizeof what, "a run of %d bodies", m->nbody);
-    return size_in_memory(size_product((size_t)m->nbody, (size_t)each), "", 0, what, e);
+    snprintf(what, sizeof what, "a run of %d bodies", n);
+    return size_in_memory(size_product((size_t)n, (size_t)each), "", 0, what, e);
+}
+
+/* The scene belongs to the cache: runs of one campaign that differ in machine or network share it.
+ * Its part, if processes divide it; where one of them cannot, all have it whole. */
+static struct scene *take_scene(struct program_run *r, struct err *e)
+{
+    const struct run_part *part = divided_fits(&r->spec, r->order.keep) ? r->part : NULL;
+    if (!fits_in_memory(r, part, e)) return NULL;
+    struct scene *s = part ? scene_take(r->cache, &r->spec, r->order.keep, part, e) : NULL;
+    r->divided = s != NULL;
+    return s ? s : scene_take(r->cache, &r->spec, r->order.keep, NULL, e);
 }
 
 /* Bodies that were merged away still count in the run's row: the user described them. */
 static bool open(struct program_run *r, struct err *e)
 {
-    /* The scene belongs to the cache: runs of one campaign that differ in machine or network share
-     * it. */
-    struct scene *scene =
-        fits_in_memory(r, e) ? scene_take(r->cache, &r->spec, r->order.keep, e) : NULL;
+    struct scene *scene = take_scene(r, e);
     if (!scene || !dynamics_open(r, scene->model, scene->state, e)) return false;
     struct dynamics_run *d = dynamics_run_of(r);
     d->scene = scene;

@@ -32,7 +32,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->direct = spec->formulation == FORMULATION_DIRECT;
     f->watch = job->watch || refine;
     f->step = implicit_step(job);
-    chain_carve(ch, c, job, rank, true, refine || !f->direct);
+    chain_carve(ch, c, job, rank, true, refine || !f->direct, false);
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
     f->tau = CARVE(c, nu, real);
     f->ud = CARVE(c, nu, real);

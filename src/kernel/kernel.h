@@ -64,6 +64,13 @@ struct kernel_type {
                      const struct job_omit *omit, struct program_estimate *out);
 };
 
+/* kernel_block: the first of n bodies that rank k has where ranks have equal numbers of them,
+ * larger blocks first; of k = nrank, n. */
+static inline int kernel_block(int n, int nrank, int k)
+{
+    return k * (n / nrank) + (k < n % nrank ? k : n % nrank);
+}
+
 /* kernel_find: a kernel of dynamics by name, in double precision; NULL when there is none. */
 const struct kernel_type *kernel_find(const char *name);
 

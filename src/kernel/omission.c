@@ -15,6 +15,12 @@ static bool all_zero(const double *x, int n)
     return true;
 }
 
+bool omission_still(const struct model *m, const struct state *s)
+{
+    const int first = m->u_at[m->first];
+    return all_zero(s->qd + first, m->u_at[m->end] - first);
+}
+
 /* A term that is zero in all its parts for the whole run is not computed. Exact zeros only: a small
  * number is a number. */
 struct job_omit omission_job(const struct run_spec *spec, unsigned keep, const struct model *m,
@@ -23,7 +29,7 @@ struct job_omit omission_job(const struct run_spec *spec, unsigned keep, const s
     struct job_omit o = {0};
     if (!m) return o;
     /* With time steps a state at rest begins to move: velocities count. */
-    const bool rest = spec->kernel.steps == 0 && all_zero(s->qd, m->nu);
+    const bool rest = spec->kernel.steps == 0 && !s->others_move && omission_still(m, s);
     o.velocity = rest && !(keep & KEEP_VELOCITY);
     /* P = 0 and no external force: nothing loads the bodies. */
     o.load = o.velocity && !s->fext;
@@ -62,7 +68,9 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned 
     const struct kernel_type *kernel = kernel_find_precision(k->name, k->precision);
     if (!kernel)
         err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", k->name);
-    if (!kernel || !m || k->algebra == ALGEBRA_SPATIAL) return kernel;
+    /* A part of a model is there only of scenes that are not planar. */
+    const bool part = m && m->end - m->first < m->nbody;
+    if (!kernel || !m || part || k->algebra == ALGEBRA_SPATIAL) return kernel;
     if (k->algebra == ALGEBRA_AUTO)
         return in_plane(spec, keep, m, s) ? kernel_find_planar(k->name, k->precision) : kernel;
     return planar_scene(m, s, k->precision, e) ? kernel_find_planar(k->name, k->precision) : NULL;
@@ -71,8 +79,8 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned 
 /* A fixed joint has no coordinate: its body can be part of the one that carries it. */
 int omission_movable(const struct model *m)
 {
-    int n = 0;
-    for (int i = 0; i < m->nbody; i++) n += m->body[i].joint != JOINT_FIXED;
+    int n = m->nbody - (m->end - m->first); /* what is not here is revolute */
+    for (int i = m->first; i < m->end; i++) n += m->body[i].joint != JOINT_FIXED;
     return n;
 }
 
@@ -136,7 +144,8 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
     leave_out_add(l, KEEP_SCENES, 0, "scene and serial answers of other runs",
                   "runs of one scene share them");
     bool revolute = true;
-    for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
+    for (int i = m->first; i < m->end; i++)
+        revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
     if (job->omit.fixed > 0)
         leave_out_add(l, KEEP_FIXED, bound, "fixed joints",
                       "a body on a fixed joint is merged with the body that carries it");

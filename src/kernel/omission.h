@@ -19,6 +19,9 @@
  * when bodies merge. Returns how many did. */
 int omission_scene(int nrank, unsigned keep, struct model **m, struct state **s, struct arena *a);
 
+/* omission_still: whether no joint of the bodies of m that are here moves. */
+bool omission_still(const struct model *m, const struct state *s);
+
 /* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies
  * omission_scene will merge of `nbody`, `movable` of which are on joints that move. */
 int omission_movable(const struct model *m);

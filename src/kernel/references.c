@@ -14,21 +14,51 @@
 #include "base/text.h"
 #include "dynamics/dynamics_table.h"
 #include "kernel/dense_tally.h"
+#include "kernel/divided.h"
 #include "kernel/dynamics_program.h"
+#include "measure/rank_sums.h"
 
 enum { CRBA_MOST_DOFS = 512 };
 
-/* Largest difference over largest element (maximum norm), as in physics 8.2. Two vectors of zeros
- * agree whatever they are divided by. */
+/* Largest difference and largest element (maximum norm), as in physics 8.2. A number that is none
+ * makes the difference none. */
+struct deviation {
+    double difference, largest;
+};
+
+static struct deviation deviation_of(const double *x, const double *reference, int n)
+{
+    struct deviation d = {0, 0};
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return (struct deviation){NAN, 0};
+        d.largest = fmax(d.largest, fabs(reference[i]));
+        d.difference = fmax(d.difference, fabs(x[i] - reference[i]));
+    }
+    return d;
+}
+
+/* Two vectors of zeros agree whatever they are divided by. */
+static double relative(struct deviation d)
+{
+    return isnan(d.difference) ? NAN : d.difference == 0 ? 0 : d.difference / d.largest;
+}
+
 static double relative_error(const double *x, const double *reference, int n)
 {
-    double largest = 0, difference = 0;
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return NAN;
-        largest = fmax(largest, fabs(reference[i]));
-        difference = fmax(difference, fabs(x[i] - reference[i]));
-    }
-    return difference == 0 ? 0 : difference / largest;
+    return relative(deviation_of(x, reference, n));
+}
+
+/* A chain of revolute joints has a force for each body, so that its parts are theirs. False: a
+ * process does not answer. */
+static bool divided_error(const struct program_run *r, struct scene *scene, double *error)
+{
+    const int first = scene->first;
+    if (!divided_inverse(r->part, scene)) return false;
+    struct deviation d = deviation_of(program_output(r, OUTPUT_TAU) + first,
+                                      scene->inverse.x + first, scene->end - first);
+    if (!divided_worst(r->part, &d.difference, &d.largest)) return false;
+    *error = relative(d);
+    return true;
 }
 
 static void check_inverse(const struct program_run *r, struct scene *scene, struct run_result *out)
@@ -36,8 +66,16 @@ static void check_inverse(const struct program_run *r, struct scene *scene, stru
     /* RNEA is the reference of inverse dynamics: shortest, and of the best accuracy (physics
      * 2.1). */
     const struct kernel_job *job = &dynamics_run_of(r)->job;
-    const double error =
-        relative_error(program_output(r, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu);
+    double error;
+    if (!r->divided) {
+        error =
+            relative_error(program_output(r, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu);
+    } else if (!divided_error(r, scene, &error)) {
+        out->job_broken = true;
+        out->status = RUN_FAILED;
+        text_copy(out->text, sizeof out->text, "a process of the job does not answer");
+        return;
+    }
     program_check_add(out, "tau", "rnea", error,
                       references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
 }
@@ -251,8 +289,10 @@ static void add_parallel_work(const struct work_price *price, struct run_result 
 {
     struct work all = {0};
     /* The parallel program's own work on one processor: the denominator of relative speedup. */
-    for (int64_t k = 0; k < (int64_t)out->nrank * out->nstage; k++)
-        work_add(&all, &out->stage[k].work);
+    for (int i = 0; i < out->nstage; i++) {
+        const struct stage_row row = stage_row_make(out, i);
+        work_add(&all, &row.all.work);
+    }
     program_baseline_add(out, price, "parallel code on one processor", &all);
 }
 

@@ -7,6 +7,8 @@
 #include "base/memory.h"
 #include "dynamics/planar_dynamics.h"
 #include "dynamics/system.h"
+#include "kernel/divided.h"
+#include "kernel/kernel.h"
 #include "kernel/omission.h"
 
 /* What may stay in memory beside the scene in use: scenes, and bodies of all of them together. */
@@ -33,9 +35,19 @@ void scene_cache_destroy(struct program_cache *cache)
     free(cache);
 }
 
+/* All bodies, or those of a part's ranks. */
+static struct model *make_model(const struct run_spec *spec, const struct run_part *part,
+                                struct arena *a, struct err *e)
+{
+    if (!part) return model_build(&spec->model, a, e);
+    return model_part(&spec->model, kernel_block(spec->model.nbody, spec->nrank, part->first),
+                      kernel_block(spec->model.nbody, spec->nrank, part->end), a, e);
+}
+
 /* One arena per scene, so that giving it away is one call. What can be left out is decided here,
  * once for all runs that share the scene. */
-static struct scene *scene_make(const struct run_spec *spec, unsigned keep, struct err *e)
+static struct scene *scene_make(const struct run_spec *spec, unsigned keep,
+                                const struct run_part *part, struct err *e)
 {
     struct arena *a = arena_create();
     struct scene *s = TAKE(a, 1, struct scene);
@@ -43,9 +55,16 @@ static struct scene *scene_make(const struct run_spec *spec, unsigned keep, stru
     s->spec = spec->model;
     s->keep = keep;
     s->still = spec->kernel.steps == 0;
-    s->model = model_build(&spec->model, a, e);
+    s->model = make_model(spec, part, a, e);
     if (s->model) s->state = state_make(s->model, &spec->model, a);
+    if (part && !divided_agree(part, s->model, s->state)) {
+        err_clear(e);
+        arena_destroy(a);
+        return NULL;
+    }
     if (s->state) {
+        s->first = s->model->first;
+        s->end = s->model->end;
         s->nbody = s->model->nbody;
         s->movable = omission_movable(s->model);
         s->mergeable = omission_mergeable(spec->nrank, keep, s->nbody, s->movable);
@@ -81,21 +100,26 @@ static void make_room(struct program_cache *cache, int nbody)
 /* A scene depends on the model's description, on what is kept, on whether anything moves, and on
  * how many fixed bodies may be merged, which depends on P. Everything else of a spec may differ. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
-                         struct err *e)
+                         const struct run_part *part, struct err *e)
 {
     cache->clock++;
+    const int n = spec->model.nbody;
+    const int first = part ? kernel_block(n, spec->nrank, part->first) : 0,
+              end = part ? kernel_block(n, spec->nrank, part->end) : n;
     for (int i = 0; i < cache->nscene && !(keep & KEEP_SCENES); i++) {
         struct scene *s = cache->scene[i];
         /* P may leave fewer bodies to merge than the cached scene has merged. */
         if (s->mergeable != omission_mergeable(spec->nrank, keep, s->nbody, s->movable)) continue;
         /* What is at rest now may move after the first time step. */
         if (s->still != (spec->kernel.steps == 0)) continue;
+        const bool whole = !part && s->end - s->first == s->nbody;
+        if (!whole && (s->first != first || s->end != end)) continue;
         /* The whole description counts, field by field, so its bytes are compared. */
         if (s->keep != keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
         s->used = cache->clock;
         return s;
     }
-    struct scene *s = scene_make(spec, keep, e);
+    struct scene *s = scene_make(spec, keep, part, e);
     if (!s) return NULL;
     /* Only when the new scene exists is an old one given away. */
     make_room(cache, s->model->nbody);

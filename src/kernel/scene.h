@@ -28,6 +28,7 @@ struct scene {
     struct arena *arena;     /* owned */
     struct model_spec spec;  /* what it was made from */
     unsigned keep;
+    int first, end;          /* bodies that are here, of model->nbody */
     bool still;              /* made for one evaluation: what is at rest stays so */
     int nbody, movable;      /* bodies as described; those on joints that move */
     int mergeable;           /* the others, where P lets them become part of these; otherwise 0 */
@@ -43,10 +44,11 @@ struct program_cache *scene_cache_create(void);
 void scene_cache_destroy(struct program_cache *cache);
 
 /* scene_take: the scene that `spec` asks for, with what `keep` (KEEP_* of the order) puts back,
- * from the cache or made now; borrowed until the next call. NULL with *e set when it cannot be
- * built. */
+ * from the cache or made now; borrowed until the next call. `part`: not NULL, what ranks of that
+ * part need of it, on all processes or, where one of them cannot make its part, on none (NULL
+ * without an error). NULL with *e set when it cannot be built. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
-                         struct err *e);
+                         const struct run_part *part, struct err *e);
 
 /* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler.
  * scene_forward: accelerations by `method`. Computed at the first call. */

@@ -71,6 +71,8 @@ struct omission {
     unsigned keep;          /* KEEP_* of run_spec.h that puts it back; 0: nothing does */
 };
 
+struct rank_sums;
+
 struct run_result {
     enum run_status status;
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
@@ -87,6 +89,9 @@ struct run_result {
     char stage_name[RUN_MAX_STAGES][24];
     struct stage_time *stage;  /* (nrank x nstage), in the run's arena */
     int64_t *finish_ps;        /* (nrank) when each rank ended, in the run's arena */
+    /* of both, instead of them, where single ranks are not asked for (run_order.sums); in the run's
+     * arena */
+    struct rank_sums *sums;
 
     int nbaseline;
     struct baseline baseline[RUN_MAX_BASELINES];

@@ -113,10 +113,10 @@ static void name_body(struct body_def *b, int i)
     snprintf(b->name, sizeof b->name, "body %d", i);
 }
 
-/* Chains, combs, stars, trees: they differ in the parent alone. */
-static bool add_rods(struct model *m, const struct model_spec *spec, struct err *e)
+/* Chains, combs, stars, trees: they differ in the parent alone. Bodies up to end - 1. */
+static bool add_rods(struct model *m, const struct model_spec *spec, int end, struct err *e)
 {
-    for (int i = 0; i < spec->nbody; i++) {
+    for (int i = m->nbody; i < end; i++) {
         /* A stream for each body, so that n bodies are the first n of n + 1. */
         struct random r = random_make(spec->seed, STREAM_SHAPE, (uint64_t)i);
         struct body_def b = {.parent = parent_of(spec, i, &r)};
@@ -272,20 +272,42 @@ static struct model_spec in_own_units(const struct model_spec *spec, struct mode
     return x;
 }
 
+static void set_gravity(struct model *m, const struct model_spec *spec)
+{
+    for (int k = 0; k < 3; k++) m->gravity[k] = spec->gravity[k] * m->second * m->second / m->metre;
+}
+
 struct model *generator_model(const struct model_spec *spec, struct arena *a, struct err *e)
 {
     struct model *m = model_begin(a, NULL);
     const struct model_spec x = in_own_units(spec, m);
     /* Of 10^8 bodies none is made before all are known to fit. */
-    if (!model_reserve(m, spec->nbody, e)) return NULL;
+    if (!model_reserve(m, spec->nbody, spec->nbody, e)) return NULL;
     bool good;
     switch (spec->generator) {
     case MODEL_RING: good = add_ring(m, &x, e); break;
     case MODEL_FOUR_BAR: good = add_four_bar(m, &x, e); break;
     case MODEL_POLYMER: good = add_polymer(m, &x, e); break;
-    default: good = add_rods(m, &x, e);
+    default: good = add_rods(m, &x, x.nbody, e);
     }
     /* Only now are the units known: polymers have set theirs. */
-    for (int k = 0; k < 3; k++) m->gravity[k] = spec->gravity[k] * m->second * m->second / m->metre;
+    set_gravity(m, spec);
     return good && model_finish(m, false, e) ? m : NULL;
+}
+
+/* The frame of a body on the base's side is turned by its own axis: its record is there, too. Pages
+ * of the others' records are never touched. */
+struct model *generator_part(const struct model_spec *spec, int first, int end, struct arena *a,
+                             struct err *e)
+{
+    struct model *m = model_begin(a, NULL);
+    const struct model_spec x = in_own_units(spec, m);
+    if (!model_reserve(m, spec->nbody, end - first, e)) return NULL;
+    m->nbody = first > 0 ? first - 1 : 0;
+    if (!add_rods(m, &x, end, e)) return NULL;
+    m->nbody = spec->nbody;
+    m->first = first;
+    m->end = end;
+    set_gravity(m, spec);
+    return model_finish(m, false, e) ? m : NULL;
 }

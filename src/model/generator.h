@@ -19,4 +19,8 @@
  * left. */
 struct model *generator_model(const struct model_spec *spec, struct arena *a, struct err *e);
 
+/* generator_part: of a system that model_divides, bodies first .. end - 1 (model_part). */
+struct model *generator_part(const struct model_spec *spec, int first, int end, struct arena *a,
+                             struct err *e);
+
 #endif

@@ -85,10 +85,10 @@ static const char *joint_fault(const struct body_def *b)
 }
 
 /* Parents first: every sweep of the algorithms relies on it, and so no tree has a cycle. */
-bool model_reserve(struct model *m, int n, struct err *e)
+bool model_reserve(struct model *m, int n, int here, struct err *e)
 {
     /* With the bodies go their five index tables (model_finish). */
-    const size_t bytes = size_product((size_t)n, sizeof(struct body_def) + 5 * sizeof(int));
+    const size_t bytes = size_product((size_t)here, sizeof(struct body_def) + 5 * sizeof(int));
     char what[64];
     snprintf(what, sizeof what, "a model of %d bodies", n);
     if (!size_in_memory(bytes, m->file ? m->file : "", 0, what, e)) return false;
@@ -235,6 +235,17 @@ static void index_children(struct model *m)
         if (m->body[i].parent >= 0) m->child[at[m->body[i].parent]++] = i;
 }
 
+/* A part of a chain of revolute joints: a coordinate and a child for each body. */
+static void index_part(struct model *m)
+{
+    m->q_at = m->u_at = TAKE(m->arena, m->nbody + 1, int);
+    m->row_at = TAKE(m->arena, 1, int);
+    for (int i = m->first; i <= m->end; i++) m->q_at[i] = i;
+    m->is_chain = m->has_phi = true;
+    for (int i = m->first; i < m->end; i++) m->has_phi = m->has_phi && invertible(&m->body[i]);
+    m->nq = m->nu = m->q_at[m->nbody] = m->nbody;
+}
+
 /* Where each body's numbers begin, and what kind of system it is. */
 static void index_coordinates(struct model *m)
 {
@@ -268,10 +279,16 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
                           MODEL_MAX_BODIES);
     if (m->nbody == 0)
         return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "the model has no body");
-    for (int i = 0; i < m->nbody; i++)
+    const bool part = m->end > 0;
+    if (!part) m->end = m->nbody;
+    for (int i = m->first; i < m->end; i++)
         if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
-    index_children(m);
-    index_coordinates(m);
+    if (part) {
+        index_part(m);
+    } else {
+        index_children(m);
+        index_coordinates(m);
+    }
     /* Their matrix is dense. */
     if (m->nrow > MODEL_MAX_ROWS)
         return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0,

@@ -60,6 +60,7 @@ struct loop_def {
 
 struct model {
     int nbody, nq, nu, nloop;
+    int first, end; /* bodies that are here: all, but in model_part; counts are of the whole */
     int nrow;                /* constraints of all loops together */
     struct body_def *body;   /* (nbody) */
     struct loop_def *loop;   /* (nloop) */
@@ -91,6 +92,7 @@ struct state {
     double *fext;
     /* prescribed motion of the base: [angular; linear], without gravity */
     double base_acceleration[6];
+    bool others_move; /* of a part of a model: some rate of a body that is not here is not zero */
     /* all rates are zero, and serial forward and inverse dynamics may leave their terms out */
     bool at_rest;
 };
@@ -103,9 +105,8 @@ enum { MODEL_MAX_BODIES = 1 << 27, MODEL_MAX_ROWS = 32768 };
  * messages. */
 struct model *model_begin(struct arena *a, const char *file);
 
-/* model_reserve: room for `n` bodies, no more: what a generator knows beforehand. Returns false
- * with ERR_CONFIG when this computer has not that much memory. */
-bool model_reserve(struct model *m, int n, struct err *e);
+/* model_reserve: room for `n` bodies. False with ERR_CONFIG when `here` of them do not fit. */
+bool model_reserve(struct model *m, int n, int here, struct err *e);
 
 /* model_add_body: append *def (copied). Returns its index; -1 with *e set when parent, axis or
  * placement make no sense. A zero `placement.quat` means the identity. */
@@ -127,6 +128,14 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e);
 /* model_build: the system that `spec` asks for, from the generators; URDF and vector files through
  * urdf.h, vector.h. Returns NULL with *e set. */
 struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e);
+
+/* model_divides: whether bodies of the system that `spec` asks for can be made without the others:
+ * generated chains whose joints are all revolute. model_part: the system of which bodies first ..
+ * end - 1 are here. Whether others have an inertia to invert is not known: has_phi is that of the
+ * part. NULL as model_build. */
+bool model_divides(const struct model_spec *spec);
+struct model *model_part(const struct model_spec *spec, int first, int end, struct arena *a,
+                         struct err *e);
 
 /* state_take: a state of m with zeros, identity quaternions and no external forces. */
 struct state *state_take(const struct model *m, struct arena *a);

@@ -14,6 +14,18 @@ struct model *model_build(const struct model_spec *spec, struct arena *a, struct
     }
 }
 
+bool model_divides(const struct model_spec *spec)
+{
+    return spec->generator == MODEL_SERIAL_CHAIN && spec->joint == JOINT_REVOLUTE &&
+           spec->base != BASE_FLOATING;
+}
+
+struct model *model_part(const struct model_spec *spec, int first, int end, struct arena *a,
+                         struct err *e)
+{
+    return generator_part(spec, first, end, a, e);
+}
+
 /* Vectors bring states of their own; all else is seeded. */
 struct state *state_given(const struct model *m, const struct model_spec *spec, struct arena *a)
 {

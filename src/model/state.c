@@ -15,7 +15,7 @@ struct state *state_take(const struct model *m, struct arena *a)
     s->qd = TAKE(a, m->nu, double);
     s->qdd = TAKE(a, m->nu, double);
     s->tau = TAKE(a, m->nu, double);
-    for (int i = 0; i < m->nbody; i++) {
+    for (int i = m->first; i < m->end; i++) {
         const int quaternion = joint_quaternion(m->body[i].joint);
         if (quaternion >= 0) s->q[m->q_at[i] + quaternion + 3] = 1;
     }
@@ -33,7 +33,7 @@ double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
 static void scatter(const struct model *m, uint64_t seed, enum pose_stream stream, double angular,
                     double linear, double *x)
 {
-    for (int i = 0; i < m->nbody; i++) {
+    for (int i = m->first; i < m->end; i++) {
         /* A stream for each body and purpose: what one body draws shifts no other's numbers. */
         struct random r = random_make(seed, stream, (uint64_t)i);
         enum model_joint joint = m->body[i].joint;
@@ -46,7 +46,7 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
 static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force,
                              double length, double *fext)
 {
-    for (int i = 0; i < m->nbody; i++) {
+    for (int i = m->first; i < m->end; i++) {
         struct random r = random_make(spec->seed, STREAM_FORCE, (uint64_t)i);
         for (int k = 0; k < 6; k++)
             fext[6 * i + k] = random_normal(&r) * force * (k < 3 ? 1 : length);
@@ -75,7 +75,7 @@ struct state *state_generate(const struct model *m, const struct model_spec *spe
     /* A ring closes at q = 0, a four-bar in a pose of its own: drawn ones would open both. */
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)
-        for (int i = 0; i < m->nbody; i++)
+        for (int i = m->first; i < m->end; i++)
             pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
     /* What slides has rates a link's length times those of what turns. Accelerations are of the
      * size of the velocity terms, rate^2, so that neither hides the other. */

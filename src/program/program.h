@@ -24,6 +24,7 @@
 #include "base/err.h"
 #include "comm/comm.h"
 #include "measure/run_result.h"
+#include "program/run_part.h"
 #include "spec/run_spec.h"
 enum { PROGRAM_OUTPUTS = 12 };
 /* What every rank executes. `job` is the program's own, shared by all ranks and read-only to
@@ -51,18 +52,18 @@ struct program_run {
                              so it may be another run than the one that its config_hash names */
     struct run_order order;      /* how it is executed, a copy; job_run counts its attempts, too */
     struct program_cache *cache; /* what runs share; NULL: nothing */
-    struct arena *arena;         /* memory of open: lives as long as this struct */
-
+    struct arena *arena; /* memory of open: lives as long as this struct */
+    const struct run_part *part; /* what of the run this process makes, NULL: all; borrowed */
     void *own;                       /* the program's own, made by open in `arena` */
-    /* set by open; may be chosen among several, or made in `arena` */
+    /* set by open */
     const struct rank_program *rank;
     const void *job;                 /* what the ranks get; set by prepare */
-    /* bodies and degrees of freedom of the scene; 0: it has none */
-    int nbody, nu;
+    int nbody, nu; /* bodies and degrees of freedom of the scene; 0: it has none */
     double metre, kilogram, second;  /* its units in SI; 0: it has none */
     struct comm_output output[PROGRAM_OUTPUTS]; /* made by prepare */
     const struct text *said; /* lines of the result, see run_result.said; NULL: none */
     int exit_status;         /* of a person's program: the first that is not 0 */
+    bool divided; /* run_part.h: only what the part's ranks need is there; set by open */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
@@ -72,7 +73,7 @@ struct program_estimate {
     double scene_bytes;     /* host memory of the model, its references and serial codes: at most */
 };
 
-/* What a run leaves out, collected by program_leave_out. */
+/* What a run leaves out. */
 struct left_out {
     unsigned keep;          /* KEEP_* of the run: what is put back is not listed */
     struct omission *item;  /* (RUN_MAX_OMISSIONS) */
@@ -101,8 +102,7 @@ struct program_type {
      * this program cannot run the settings (more ranks than bodies, a scene that it does not do),
      * other kinds when a file is bad. */
     bool (*open)(struct program_run *r, struct err *e);
-    /* gives back what open, even if it failed, took beside arenas; or NULL */
-    void (*close)(struct program_run *r);
+    void (*close)(struct program_run *r); /* what open, even if it failed, took beside arenas */
     /* prepare: outputs, job and shared tables from `scratch`, which lives until the run has been
      * judged or, the last time, checked; costs no simulated time. */
     bool (*prepare)(struct program_run *r, struct arena *scratch, struct err *e);

@@ -172,6 +172,8 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     /* What processes cannot share, the first one does. */
     if (ordered && r->order.hosts && r->order.hosts->rank > 0) return true;
     if (!ordered) load.hosts = r->order.hosts, load.job_run = r->order.job_run;
+    load.keeps_outputs = r->divided;
+    load.sums = r->order.sums;
     load.fills = !tape && shares_page(r, &load);
     struct launch l = {.rank = r->rank, .job = r->job, .tape = tape};
     if (!load.fills && !(l.workspace = make_workspaces(r, &load, tape, scratch, e))) return false;
@@ -180,7 +182,8 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
     if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts))
         return true;
-    if (load.hosts && load.hosts->rank > 0) return true;
+    /* A part of the scene is not enough to make all of it again. */
+    if (load.hosts && (load.hosts->rank > 0 || r->divided)) return true;
     /* Of several ranks that fail, one is told: the first on one thread. Which one is first on
      * several depends on the host, so such a run is made again on one. */
     arena_release(a, results);
@@ -188,6 +191,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     memset(out, 0, sizeof *out);
     out->threads = 1;
     load.hosts = NULL;
+    load.sums = false;
     load.threads = 1;
     l.tape = NULL;
     load.fills = shares_page(r, &load);

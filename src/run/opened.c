@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "guest/guest_program.h"
 #include "kernel/programs.h"
+#include "run/part_hosts.h"
 #include "run/run_parts.h"
 #include "schedule/schedule_program.h"
 
@@ -67,6 +68,11 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
         return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them",
                        spec->kernel.name);
     r->cache = cache_of(cache, r->type);
+    if (r->order.hosts && r->order.hosts->size > 1 && !r->order.whole && !spec->jobs) {
+        struct run_part *part = TAKE(a, 1, struct run_part);
+        *part = part_hosts(r->order.hosts, spec->nrank);
+        r->part = part;
+    }
     return r->type->open(r, e);
 }
 

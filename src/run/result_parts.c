@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "measure/rank_sums.h"
 
 /* Whoever adds an array to the result adds it here: nothing else knows how results travel. */
 struct result_parts result_parts(struct run_result *r)
@@ -12,11 +13,13 @@ struct result_parts result_parts(struct run_result *r)
     const size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
     return (struct result_parts){
         {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link,
-         (void **)&r->said, (void **)&r->path, (void **)&r->slack, (void **)&r->rank_slack},
+         (void **)&r->said, (void **)&r->path, (void **)&r->slack, (void **)&r->rank_slack,
+         (void **)&r->sums},
         {rows * sizeof *r->stage, (r->finish_ps ? (size_t)r->nrank : 0) * sizeof *r->finish_ps,
          (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link, (size_t)r->nsaid,
          (size_t)r->npath * sizeof *r->path, (size_t)r->nslack * sizeof *r->slack,
-         (r->rank_slack ? rows : 0) * sizeof *r->rank_slack},
+         (r->rank_slack ? rows : 0) * sizeof *r->rank_slack,
+         (r->sums ? 1 : 0) * sizeof *r->sums},
     };
 }
 

@@ -11,7 +11,7 @@
 #include "base/arena.h"
 #include "measure/run_result.h"
 
-enum { RESULT_PARTS = 8 };
+enum { RESULT_PARTS = 9 };
 
 struct result_parts {
     void **array[RESULT_PARTS]; /* members of the result, in the order in which they travel */

@@ -131,6 +131,7 @@ static void refuse_long_baselines(struct run_result *out)
     out->nbaseline = out->nstage = 0;
     out->stage = NULL;
     out->finish_ps = NULL;
+    out->sums = NULL;
     out->nspan = 0;
     out->measured_s = NAN;
 }
@@ -185,6 +186,37 @@ static bool ranks_fit(const struct run_spec *spec, const struct run_order *order
     return size_in_memory(size_product((size_t)spec->nrank, STACK_LEAST_BYTES), "", 0, what, e);
 }
 
+/* A divided run that processes cannot share, because things must happen in order, is opened again
+ * as a whole; all of them come to the same verdict. */
+static bool open_shared(const struct run_spec *spec, const struct run_order *order,
+                        struct run_cache *cache, struct program_run *r, struct err *e)
+{
+    if (!run_open(spec, order, cache, cache->own, r, e)) return false;
+    if (!r->divided) return true;
+    const struct machine_spec machine = omission_machine(spec, order->keep);
+    const struct record_spec record = omission_record(spec, order->keep);
+    if (!launch_ordered(r, &machine, &record, omission_largest_message(r))) return true;
+    struct run_order whole = *order;
+    whole.whole = true;
+    run_close(r);
+    return run_open(spec, &whole, cache, cache->own, r, e);
+}
+
+/* Of ranks that fail one is told, the first on one thread. Process 0 makes the run again, alone; it
+ * has no more than its part of the scene. */
+static bool again_alone(const struct run_spec *spec, struct run_cache *cache,
+                        struct program_run *r, struct arena *a, struct run_result *out,
+                        struct err *e)
+{
+    struct run_order alone = r->order;
+    if (!r->divided || !chief(r) || out->status != RUN_FAILED || out->job_broken) return true;
+    alone.hosts = NULL;
+    alone.threads = 0;
+    run_close(r);
+    arena_empty(cache->scratch, KEPT_BYTES);
+    return run_open(spec, &alone, cache, cache->own, r, e) && run_attempts(r, cache, a, out, e);
+}
+
 bool run_sharing(const struct run_spec *spec, const struct run_order *order,
                  struct run_cache *cache, struct arena *a, struct run_result *out, struct err *e)
 {
@@ -199,9 +231,9 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
     struct arena *scratch = cache->scratch;
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
-    const bool ok = ranks_fit(spec, order, e) && run_open(spec, order, cache, cache->own, &r, e) &&
-                    run_attempts(&r, cache, a, out, e);
-    if (ok && chief(&r)) {
+    const bool ok = ranks_fit(spec, order, e) && open_shared(spec, order, cache, &r, e) &&
+                    run_attempts(&r, cache, a, out, e) && again_alone(spec, cache, &r, a, out, e);
+    if (ok && (chief(&r) || r.divided)) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;
         out->nu = r.nu;

@@ -81,6 +81,9 @@ struct run_order {
     /* processes that share the run, NULL: this one alone; borrowed */
     const struct hosts *hosts;
     int job_run;                     /* its number among those of the processes */
+    /* of such a run: sums over the ranks will do, single ranks' times are not wanted; each process
+     * makes the whole scene */
+    bool sums, whole;
 };
 
 struct run_spec {

@@ -67,6 +67,8 @@ void rank_entries(const struct run_result *r, struct text *t)
     text_add_bytes(t, "]", 1);
 }
 
+bool run_entries_ranks(int nrank) { return nrank <= STORE_RANK_ROWS; }
+
 /* For qsort: busiest first, by longest queues, then longest use, then place, so that the choice
  * is the same every time. */
 static int compare_load(const void *a, const void *b)

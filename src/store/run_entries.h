@@ -6,6 +6,8 @@
 #ifndef STORE_RUN_ENTRIES_H
 #define STORE_RUN_ENTRIES_H
 
+#include <stdbool.h>
+
 #include "base/text.h"
 #include "measure/column.h"
 #include "measure/run_result.h"
@@ -20,6 +22,9 @@ struct entry_view {
 
 enum { ENTRY_RANK_STAGE, ENTRY_LINK_LOAD, ENTRY_VIEWS };
 extern const struct entry_view entry_view[ENTRY_VIEWS];
+
+/* run_entries_ranks: whether those of a run of nrank ranks are kept; of more, sums alone. */
+bool run_entries_ranks(int nrank);
 
 /* rank_entries: all ranks and stages of `r` in that order, but for stages in which a rank did
  * nothing; appended. */

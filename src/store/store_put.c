@@ -148,12 +148,12 @@ static bool put_entries(struct store *s, enum statement which, int64_t run,
 static bool put_stages(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     /* A run that failed before it began has no stages. */
-    if (r->stage == NULL || r->nrank == 0) return true;
+    if ((r->stage == NULL && r->sums == NULL) || r->nrank == 0) return true;
     for (int i = 0; i < r->nstage; i++) {
         const struct stage_row row = stage_row_make(r, i);
         if (!put_numbered(s, STATEMENT_STAGE, run, i, &row, e)) return false;
     }
-    return s->passing || r->nrank > STORE_RANK_ROWS || 
+    return s->passing || !run_entries_ranks(r->nrank) || r->stage == NULL ||
            put_entries(s, STATEMENT_RANK_TIMES, run, rank_entries, r, e);
 }
 

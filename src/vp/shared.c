@@ -1,7 +1,8 @@
 /* shared.c - see shared.h.
  *
- * Nothing here is in the way of the simulation: each process has kept what its own ranks left, and
- * sends it once, in blocks. Process 0 alone has room for all, as far as it is touched. */
+ * Nothing here is in the way of the simulation: each process has kept what its own ranks left, adds
+ * it up as far as that can be done there, and sends what is wanted of the rest once, in blocks.
+ * Process 0 alone has room for all, as far as it is touched. */
 #include "vp/shared.h"
 
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 #include "base/check.h"
 #include "base/digest.h"
 #include "hosts/hosts_copy.h"
+#include "measure/rank_sums.h"
 #include "vp/explain.h"
 #include "vp/matching.h"
 #include "vp/team.h"
@@ -31,7 +33,7 @@ enum shared_end shared_end(struct world *w)
     const struct hosts *h = w->load->hosts;
     if (w->broken) return SHARED_BROKEN;
     int64_t v[2] = {w->nfinished, w->failed || w->late};
-    if (!hosts_sum(h, TAG_END, v, 2) || !hosts_tell(h, TAG_END, v, sizeof v)) return SHARED_BROKEN;
+    if (!hosts_all_sum(h, TAG_END, v, 2)) return SHARED_BROKEN;
     return v[1] ? SHARED_FAILED : v[0] == w->nrank ? SHARED_FINISHED : SHARED_DEADLOCK;
 }
 
@@ -80,88 +82,124 @@ static bool receive_outputs(struct world *w, int from)
 
 /* --- times and accounts ----------------------------------------------------------------------- */
 
+/* The latest of all ranks, on all processes. */
+static bool find_makespan(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    struct run_result *r = w->result;
+    for (int i = w->first; i < w->first + w->nown; i++) {
+        r->finish_ps[i] = w->vp[i].finish;
+        if (r->finish_ps[i] > r->makespan_ps) r->makespan_ps = r->finish_ps[i];
+    }
+    return hosts_largest(h, TAG_TIMES, &r->makespan_ps, 1) &&
+           hosts_tell(h, TAG_TIMES, &r->makespan_ps, sizeof r->makespan_ps);
+}
+
+/* In rank order, as collect in world.c mixes it: from process to process, and back to the first. */
+static bool mix_digest(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    uint64_t *digest = &w->result->digest;
+    *digest = digest_mix(DIGEST_START, sim_digest(w->sim));
+    if (h->rank > 0 && !hosts_copy_in(h, h->rank - 1, TAG_DIGESTS, digest, sizeof *digest))
+        return false;
+    for (int i = w->first; i < w->first + w->nown; i++)
+        *digest = digest_mix(digest_mix(*digest, w->vp[i].digest), (uint64_t)w->vp[i].finish);
+    const int next = (h->rank + 1) % h->size;
+    if (h->size > 1 && !hosts_copy_out(h, next, TAG_DIGESTS, digest, sizeof *digest)) return false;
+    return h->rank > 0 || h->size == 1 ||
+           hosts_copy_in(h, h->size - 1, TAG_DIGESTS, digest, sizeof *digest);
+}
+
+/* What each process can do for its own ranks. */
+static bool add_up(struct world *w)
+{
+    struct run_result *r = w->result;
+    int64_t sum[3] = {fiber_pool_switches(w->fibers), 0, 0};
+    for (int i = w->first; i < w->first + w->nown; i++) {
+        struct stage_time *row = r->stage + (size_t)i * ((size_t)w->nstage + 1);
+        row[w->nstage].wait_ps += r->makespan_ps - r->finish_ps[i];
+        for (int k = 0; k < w->nstage; k++) sum[1] += row[k].messages, sum[2] += row[k].bytes;
+    }
+    if (!hosts_sum(w->load->hosts, TAG_SIZES, sum, 3)) return false;
+    r->switches = sum[0], r->messages = sum[1], r->bytes = sum[2];
+    return true;
+}
+
+/* Sums and extremes of all ranks, in the order of processes; the ranks' own times are not sent. */
+static bool join_sums(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    struct run_result *r = w->result;
+    struct rank_sums *more = TAKE(w->scratch, 1, struct rank_sums);
+    r->sums = TAKE(w->arena, 1, struct rank_sums);
+    rank_sums_make(r, w->first, w->first + w->nown, r->sums);
+    r->stage = NULL;
+    r->finish_ps = NULL;
+    if (h->rank > 0) return hosts_copy_out(h, 0, TAG_STAGES, r->sums, sizeof *r->sums);
+    for (int i = 1; i < h->size; i++) {
+        if (!hosts_copy_in(h, i, TAG_STAGES, more, sizeof *more)) return false;
+        rank_sums_add(r->sums, more);
+    }
+    return true;
+}
+
 /* Node i's injection port is resource i; at the level that processes share, nothing else is
  * loaded. */
-static bool send_part(struct world *w, const uint64_t *digest)
+static bool send_part(struct world *w)
 {
     const struct hosts *h = w->load->hosts;
     const size_t n = (size_t)w->nown, row = (size_t)w->nstage + 1;
-    bool ok =
-        hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first, n * sizeof(int64_t)) &&
-        hosts_copy_out(h, 0, TAG_DIGESTS, digest, n * sizeof *digest) &&
-        hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
-                       n * row * sizeof *w->result->stage);
+    bool ok = w->load->sums ||
+              (hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first,
+                              n * sizeof(int64_t)) &&
+               hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
+                              n * row * sizeof *w->result->stage));
     for (int i = w->first; ok && i < w->first + w->nown; i++) {
         const struct link_load *load = net_port_load(w->net, w->placement.node[i]);
         ok = load == NULL || hosts_copy_out(h, 0, TAG_LOADS, load, sizeof *load);
     }
-    return ok && send_outputs(w);
+    return ok && (w->load->keeps_outputs || send_outputs(w));
 }
 
 /* The other end of send_part, in its order. */
-static bool receive_part(struct world *w, int from, uint64_t *digest)
+static bool receive_part(struct world *w, int from)
 {
     const struct hosts *h = w->load->hosts;
     const size_t row = (size_t)w->nstage + 1;
     int first, end;
     team_part(w->load, from, &first, &end);
     const size_t n = (size_t)(end - first);
-    bool ok =
-        hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first, n * sizeof(int64_t)) &&
-        hosts_copy_in(h, from, TAG_DIGESTS, digest + first, n * sizeof *digest) &&
-        hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
-                      n * row * sizeof *w->result->stage);
+    bool ok = w->load->sums ||
+              (hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first,
+                             n * sizeof(int64_t)) &&
+               hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
+                             n * row * sizeof *w->result->stage));
     /* The network's own, of which copy_links makes the result's. */
     for (int i = first; ok && i < end; i++) {
         struct link_load *load = net_port_load(w->net, w->placement.node[i]);
         ok = load == NULL || hosts_copy_in(h, from, TAG_LOADS, load, sizeof *load);
     }
-    return ok && receive_outputs(w, from);
-}
-
-/* In rank order, as collect in world.c does: the same bits. */
-static void add_up(struct world *w, const uint64_t *digest)
-{
-    struct run_result *r = w->result;
-    r->digest = digest_mix(DIGEST_START, sim_digest(w->sim));
-    for (int i = 0; i < w->nrank; i++) {
-        if (r->finish_ps[i] > r->makespan_ps) r->makespan_ps = r->finish_ps[i];
-        r->digest = digest_mix(digest_mix(r->digest, digest[i]), (uint64_t)r->finish_ps[i]);
-    }
-    for (int i = 0; i < w->nrank; i++) {
-        struct stage_time *row = r->stage + (size_t)i * ((size_t)w->nstage + 1);
-        row[w->nstage].wait_ps += r->makespan_ps - r->finish_ps[i];
-        for (int k = 0; k < w->nstage; k++)
-            r->messages += row[k].messages, r->bytes += row[k].bytes;
-    }
+    return ok && (w->load->keeps_outputs || receive_outputs(w, from));
 }
 
 /* One process after the other: process 0 has room for one more part at a time beside the result. */
 bool shared_collect(struct world *w)
 {
     const struct hosts *h = w->load->hosts;
-    struct run_result *r = w->result;
-    int64_t switches = fiber_pool_switches(w->fibers);
     int overflowed;
-    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &overflowed);
+    w->result->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &overflowed);
     /* One process alone cannot end the run in good order: what it wrote over is not known. */
     if (overflowed >= 0) check_failed(__FILE__, __LINE__, "a rank's stack was not enough");
-    /* By number of the rank; only its own part on processes but 0. */
-    uint64_t *digest = TAKE(w->scratch, w->nrank, uint64_t);
-    for (int i = w->first; i < w->first + w->nown; i++) {
-        r->finish_ps[i] = w->vp[i].finish;
-        digest[i] = w->vp[i].digest;
-    }
+    if (!find_makespan(w) || !mix_digest(w) || !add_up(w)) return false;
     /* Stacks are no longer needed, and make room for what comes. */
     /* (A run that did not end well is explained from them, and does not come here.) */
     fiber_pool_destroy(w->fibers);
     w->fibers = NULL;
-    if (!hosts_sum(h, TAG_SIZES, &switches, 1)) return false;
-    r->switches = switches;
-    if (h->rank > 0) return send_part(w, digest + w->first);
+    if (w->load->sums && !join_sums(w)) return false;
+    if (h->rank > 0) return send_part(w);
     for (int i = 1; i < h->size; i++)
-        if (!receive_part(w, i, digest)) return false;
-    add_up(w, digest);
+        if (!receive_part(w, i)) return false;
     return true;
 }
 

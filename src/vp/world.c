@@ -384,7 +384,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
         CHECK(!world_ordered(m, load, record));
         team_part(load, load->hosts->rank, &w.first, &end);
         w.nown = end - w.first;
-        if (load->hosts->rank > 0) w.published = &published;
+        if (load->hosts->rank > 0 && !load->keeps_outputs) w.published = &published;
     }
     out->nrank = load->nrank;
     world_name_stages(out, load->nstage, load->stage_name);

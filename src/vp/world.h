@@ -52,6 +52,9 @@ struct world_load {
     /* processes that share the run, each with a part of the ranks; NULL: only this one */
     const struct hosts *hosts;
     int job_run;               /* number of the run among those of these processes */
+    /* of a run that processes share: each keeps the outputs that its ranks published; process 0
+     * gets sums over the ranks, not their own times */
+    bool keeps_outputs, sums;
     /* memory of the machine, of which nothing is left taken at the end; NULL: fresh */
     struct arena *scratch;
     /* of a run on one thread: stacks of an earlier one, NULL at first, and where those of this one

@@ -33,7 +33,7 @@ static struct scene *taken(struct program_cache *cache, const struct run_spec *s
 {
     struct err e;
     err_clear(&e);
-    struct scene *s = scene_take(cache, spec, keep, &e);
+    struct scene *s = scene_take(cache, spec, keep, NULL, &e);
     if (!s) fail_msg("%s", e.text);
     return s;
 }
@@ -127,7 +127,7 @@ static void a_scene_that_cannot_be_built_leaves_the_others(void **state)
     snprintf(wrong.model.path, sizeof wrong.model.path, "/nowhere/at/all.urdf");
     struct err e;
     err_clear(&e);
-    assert_null(scene_take(cache, &wrong, 0, &e));
+    assert_null(scene_take(cache, &wrong, 0, NULL, &e));
     assert_true(e.kind != ERR_NONE && strstr(e.file, "all.urdf"));
     assert_ptr_equal(taken(cache, &spec, 0), good);
     scene_cache_destroy(cache);

@@ -6,94 +6,15 @@
 #include <setjmp.h>
 #include <cmocka.h>
 #include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/random.h"
+#include "measure/rank_sums.h"
 #include "vp/world.h"
 
+#include "../support/thread_hosts.h"
 #include "crossbar.h"
 
-enum { RANKS = 97, MOST = 8 };
-
-/* --- a job of threads --- */
-
-struct parcel {
-    struct parcel *next;
-    int from, tag;
-    size_t bytes;
-    char data[];
-};
-
-static struct mailbox {
-    pthread_mutex_t lock;
-    struct parcel *first, **end;
-} box[MOST];
-static _Thread_local int me;
-
-static bool send(int to, int tag, const void *data, size_t bytes)
-{
-    struct parcel *p = malloc(sizeof *p + bytes);
-    assert_non_null(p);
-    *p = (struct parcel){.from = me, .tag = tag, .bytes = bytes};
-    if (bytes > 0) memcpy(p->data, data, bytes);
-    pthread_mutex_lock(&box[to].lock);
-    *box[to].end = p;
-    box[to].end = &p->next;
-    pthread_mutex_unlock(&box[to].lock);
-    return true;
-}
-
-/* It is through at once, or so it seems only later. */
-static bool send_begin(int to, int tag, const void *data, size_t bytes, struct hosts_request *r)
-{
-    r->word[0] = 3;
-    return send(to, tag, data, bytes);
-}
-
-static bool send_done(struct hosts_request *r, bool *done)
-{
-    *done = r->word[0]-- <= 1;
-    return true;
-}
-
-static struct parcel **find(int from, int tag)
-{
-    struct parcel **p = &box[me].first;
-    while (*p &&
-           ((from != HOSTS_ANY && (*p)->from != from) || (tag != HOSTS_ANY && (*p)->tag != tag)))
-        p = &(*p)->next;
-    return p;
-}
-
-static bool look(int from, int tag, bool wait, bool *there, struct hosts_message *m)
-{
-    assert_false(wait);
-    pthread_mutex_lock(&box[me].lock);
-    const struct parcel *p = *find(from, tag);
-    *there = p != NULL;
-    if (p) *m = (struct hosts_message){p->from, p->tag, p->bytes};
-    pthread_mutex_unlock(&box[me].lock);
-    return true;
-}
-
-static bool receive(const struct hosts_message *m, void *data)
-{
-    pthread_mutex_lock(&box[me].lock);
-    struct parcel **at = find(m->from, m->tag), *p = *at;
-    *at = p->next;
-    if (!p->next) box[me].end = at;
-    pthread_mutex_unlock(&box[me].lock);
-    if (p->bytes > 0) memcpy(data, p->data, p->bytes);
-    free(p);
-    return true;
-}
-
-static const struct hosts_calls calls = {.table = HOSTS_TABLE, .library = "threads", .send = send,
-                                         .send_begin = send_begin, .send_done = send_done,
-                                         .look = look,
-                                         .receive = receive};
+enum { RANKS = 97, MOST = THREAD_HOSTS };
 
 /* --- runs --- */
 
@@ -118,7 +39,7 @@ struct process {
     struct hosts hosts;
     world_program *program;
     int nrank, threads, number;
-    bool alone;
+    bool alone, sums;
     struct outcome out;
 };
 
@@ -130,7 +51,7 @@ static void *execute(void *argument)
     const struct comm_output output = {p->out.output, RANKS * 3};
     struct err e;
     err_clear(&e);
-    me = p->hosts.rank;
+    thread_hosts_join(p->hosts.rank);
     p->out.arena = arena_create();
     const struct world_load load = {.nrank = p->nrank,
                                     .program = p->program,
@@ -141,29 +62,30 @@ static void *execute(void *argument)
                                     .output = &output,
                                     .noutput = 1,
                                     .hosts = p->alone ? NULL : &p->hosts,
-                                    .job_run = p->number};
+                                    .job_run = p->number,
+                                    .sums = p->sums,
+                                    .keeps_outputs = p->sums};
     if (!world_run(&m, &load, &record, 7, p->out.arena, &p->out.r, &e)) fail_msg("%s", e.text);
     return NULL;
 }
 
-static void job(struct process *p, int size, world_program *program, int nrank, int threads)
+static void job(struct process *p, int size, world_program *program, int nrank, int threads,
+                bool sums)
 {
     static int number;
     number++;
+    thread_hosts_begin();
     for (int i = 0; i < size; i++) {
-        pthread_mutex_init(&box[i].lock, NULL);
-        box[i].end = &box[i].first;
-    }
-    for (int i = 0; i < size; i++) {
-        p[i] = (struct process){.hosts = {i, size, &calls},
+        p[i] = (struct process){.hosts = {i, size, &thread_hosts},
                                 .program = program,
                                 .nrank = nrank,
                                 .threads = threads,
-                                .number = number};
+                                .number = number,
+                                .sums = sums};
         assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
     }
     for (int i = 0; i < size; i++) pthread_join(p[i].thread, NULL);
-    for (int i = 0; i < size; i++) assert_null(box[i].first); /* nothing is left over */
+    assert_int_equal(thread_hosts_end(), 0); /* nothing is left over */
 }
 
 static void every_number_of_processes(world_program *program, int nrank, enum run_status status)
@@ -174,7 +96,7 @@ static void every_number_of_processes(world_program *program, int nrank, enum ru
     assert_int_equal(one.out.r.status, status);
     for (int size = 1; size <= MOST; size += size < 4 ? 1 : 4)
         for (int threads = 1; threads <= 3; threads += 2) {
-            job(many, size, program, nrank, threads);
+            job(many, size, program, nrank, threads, false);
             const struct run_result *a = &one.out.r, *b = &many[0].out.r;
             assert_int_equal(a->status, b->status);
             assert_string_equal(a->text, b->text);
@@ -256,6 +178,70 @@ static void a_deadlock_is_explained_in_the_same_words(void **state)
     every_number_of_processes(stuck_at_a_barrier, RANKS, RUN_DEADLOCK);
 }
 
+static void same_spread(const struct spread *a, const struct spread *b)
+{
+    assert_int_equal(a->sum, b->sum);
+    assert_int_equal(a->min, b->min);
+    assert_int_equal(a->max, b->max);
+    assert_int_equal(a->fits, b->fits);
+}
+
+/* What is known of all ranks, from their own times or as it was added up. */
+static void same_sums(const struct run_result *a, const struct run_result *b)
+{
+    const struct rank_summary x = rank_summary_make(a), y = rank_summary_make(b);
+    for (int i = 0; i < a->nstage; i++) {
+        const struct stage_row p = stage_row_make(a, i), q = stage_row_make(b, i);
+        assert_string_equal(p.name, q.name);
+        same_spread(&p.compute, &q.compute);
+        same_spread(&p.send, &q.send);
+        same_spread(&p.recv, &q.recv);
+        same_spread(&p.wait, &q.wait);
+        same_spread(&p.contention, &q.contention);
+        same_spread(&p.total, &q.total);
+        assert_memory_equal(&p.all, &q.all, sizeof p.all);
+    }
+    assert_true(y.has_stages && y.has_finish);
+    assert_int_equal(x.accounting_error, y.accounting_error);
+    assert_int_equal(x.compute_min, y.compute_min);
+    assert_int_equal(x.compute_max, y.compute_max);
+    assert_int_equal(x.finish_min, y.finish_min);
+    assert_int_equal(x.finish_max, y.finish_max);
+}
+
+/* Single ranks' times and outputs stay where they are; what all come to is the same. */
+static void sums_are_those_of_one_process(void **state)
+{
+    (void)state;
+    static struct process one, many[MOST];
+    one = (struct process){.program = exchanges, .nrank = RANKS, .alone = true};
+    execute(&one);
+    for (int size = 1; size <= MOST; size++) {
+        job(many, size, exchanges, RANKS, 1, true);
+        const struct run_result *a = &one.out.r, *b = &many[0].out.r;
+        assert_int_equal(b->status, RUN_OK);
+        assert_int_equal(a->digest, b->digest);
+        assert_int_equal(a->makespan_ps, b->makespan_ps);
+        assert_int_equal(a->messages, b->messages);
+        assert_int_equal(a->bytes, b->bytes);
+        assert_null(b->stage);
+        assert_null(b->finish_ps);
+        same_sums(a, b);
+        /* Each process has what its own ranks published, and nothing else. */
+        for (int i = 0; i < RANKS; i++) {
+            int holders = 0;
+            for (int k = 0; k < size; k++) {
+                const double *x = many[k].out.output;
+                holders += x[i] != 0;
+                assert_true(x[i] == 0 || x[i] == one.out.output[i]);
+            }
+            assert_int_equal(holders, one.out.output[i] != 0);
+        }
+        for (int i = 0; i < size; i++) arena_destroy(many[i].out.arena);
+    }
+    arena_destroy(one.out.arena);
+}
+
 /* Simulated time ends at one rank: the run has failed on every process. */
 static void too_long(struct comm *c, void *context)
 {
@@ -271,12 +257,9 @@ static void a_failure_ends_all_processes(void **state)
     static struct process p[MOST];
     for (int size = 2; size <= 4; size++) {
         static int number = 5000;
+        thread_hosts_begin();
         for (int i = 0; i < size; i++) {
-            box[i].first = NULL;
-            box[i].end = &box[i].first;
-        }
-        for (int i = 0; i < size; i++) {
-            p[i] = (struct process){.hosts = {i, size, &calls},
+            p[i] = (struct process){.hosts = {i, size, &thread_hosts},
                                     .program = too_long,
                                     .nrank = RANKS,
                                     .threads = 1,
@@ -289,12 +272,7 @@ static void a_failure_ends_all_processes(void **state)
             assert_false(p[i].out.r.job_broken);
             arena_destroy(p[i].out.arena);
         }
-        /* Letters of a run that failed are nobody's. */
-        for (int i = 0; i < size; i++)
-            for (struct parcel *x = box[i].first, *next; x; x = next) {
-                next = x->next;
-                free(x);
-            }
+        thread_hosts_end(); /* letters of a run that failed are nobody's */
     }
 }
 
@@ -302,6 +280,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exchanges_are_the_same),
+        cmocka_unit_test(sums_are_those_of_one_process),
         cmocka_unit_test(a_deadlock_is_explained_in_the_same_words),
         cmocka_unit_test(a_failure_ends_all_processes),
     };

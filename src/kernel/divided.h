@@ -1,0 +1,31 @@
+/* divided.h - scenes of which each of several processes makes a part, and their serial answers in
+ * as many parts.
+ *
+ * Inverse dynamics of a chain of revolute joints: a rank needs its own bodies alone, and
+ * Newton-Euler goes along the chain twice, so that a process computes the reference of its own
+ * bodies from what its neighbours hand over. Branches, loops, forward dynamics and planar scenes
+ * stay whole. */
+#ifndef KERNEL_DIVIDED_H
+#define KERNEL_DIVIDED_H
+
+#include "kernel/scene.h"
+#include "program/run_part.h"
+
+/* divided_fits: whether processes may have parts of the scene that `spec` asks for; the same on all
+ * of them. */
+bool divided_fits(const struct run_spec *spec, unsigned keep);
+
+/* divided_agree: what is known of all bodies only when every process has looked at its own: whether
+ * some move, and whether all have an inertia to invert. `model` NULL: this process could not make
+ * its part. False: one could not; then none has. */
+bool divided_agree(const struct run_part *p, struct model *model, struct state *state);
+
+/* divided_inverse: s->inverse for the bodies that are here, with the work of all. False: a process
+ * does not answer. */
+bool divided_inverse(const struct run_part *p, struct scene *s);
+
+/* divided_worst: the largest of *difference and of *reference over all processes; what is no number
+ * is larger than any. False as above. */
+bool divided_worst(const struct run_part *p, double *difference, double *reference);
+
+#endif

@@ -1,0 +1,194 @@
+/* test_divided.c - inverse dynamics of a chain of which each process of a job makes a part: process
+ * 0 has what one process has, and a wrong answer of any of them is found. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <pthread.h>
+#include <string.h>
+
+#include "kernel/dynamics_program.h"
+#include "measure/rank_sums.h"
+#include "plan/plan.h"
+#include "run/run.h"
+
+#include "../support/thread_hosts.h"
+
+enum { MOST_SETTINGS = 12, MOST_BODIES = 160, NOBODY = -1 };
+
+/* The only run of the benchmark scenario with these settings, "key=value", ended by NULL. */
+static struct run_spec spec_with(struct plan *p, const char *const *setting)
+{
+    struct plan_options o = {.set = setting};
+    struct err e;
+    err_clear(&e);
+    while (setting[o.nset]) o.nset++;
+    if (!plan_read(p, MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", &o, &e)) fail_msg("%s", e.text);
+    return p->run[0];
+}
+
+/* --- a program that one of the ranks gets wrong --- */
+
+static _Thread_local const struct rank_program *right;
+static _Thread_local int wrong_rank;
+
+static void run_wrong(struct comm *c, const void *job_, void *workspace)
+{
+    const struct kernel_job *job = job_;
+    right->run(c, job, workspace);
+    const double nonsense = 1e3;
+    if (comm_rank(c) == wrong_rank)
+        comm_publish(c, OUTPUT_TAU, kernel_block(job->model->nbody, job->nrank, wrong_rank), 1,
+                     &nonsense);
+}
+
+struct process {
+    pthread_t thread;
+    struct hosts hosts;
+    const struct run_spec *spec;
+    int wrong, number;
+    bool sums;
+    struct arena *arena;
+    struct run_result r;
+    double tau[MOST_BODIES], reference[MOST_BODIES];
+    int first, end, own_bodies; /* bodies of which records are there */
+    bool divided;
+};
+
+/* As run_sharing, but for the wrong rank. */
+static void *execute(void *argument)
+{
+    struct process *p = argument;
+    struct run_cache *cache = run_cache_create();
+    struct run_order order = {.hosts = p->hosts.size > 0 ? &p->hosts : NULL,
+                              .job_run = p->number, .sums = p->sums};
+    struct arena *own = arena_create(), *scratch = arena_create();
+    struct program_run run;
+    struct err e;
+    err_clear(&e);
+    thread_hosts_join(p->hosts.rank);
+    p->arena = arena_create();
+    if (!run_open(p->spec, &order, cache, own, &run, &e)) fail_msg("%s", e.text);
+    struct rank_program wrong = *run.rank;
+    right = run.rank;
+    wrong_rank = p->wrong;
+    wrong.run = run_wrong;
+    if (p->wrong != NOBODY) run.rank = &wrong;
+    p->divided = run.divided;
+    const struct model *m = dynamics_run_of(&run)->job.model;
+    for (int i = 0; i < m->nbody; i++) p->own_bodies += m->body[i].mass > 0;
+    if (!run_attempts(&run, cache, p->arena, &p->r, &e)) fail_msg("%s", e.text);
+    if (p->hosts.rank == 0 || run.divided) run.type->check(&run, scratch, &p->r);
+    const struct scene *s = dynamics_run_of(&run)->scene;
+    p->first = m->first, p->end = m->end;
+    for (int i = m->first; i < m->end && p->r.nerror > 0; i++) {
+        p->tau[i] = program_output(&run, OUTPUT_TAU)[i];
+        p->reference[i] = s->inverse.x[i];
+    }
+    run_close(&run);
+    arena_destroy(scratch);
+    arena_destroy(own);
+    run_cache_destroy(cache);
+    return NULL;
+}
+
+/* The result of process 0 of `size`, 0: of one without a job. */
+static struct process *job(const struct run_spec *spec, int size, int wrong, bool sums)
+{
+    static struct process p[THREAD_HOSTS];
+    static int number;
+    thread_hosts_begin();
+    memset(p, 0, sizeof p);
+    number++;
+    for (int i = 0; i < (size > 0 ? size : 1); i++) {
+        p[i] = (struct process){.hosts = {i, size, &thread_hosts},
+                                .spec = spec,
+                                .wrong = wrong,
+                                .number = number,
+                                .sums = sums};
+        assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
+    }
+    for (int i = 0; i < (size > 0 ? size : 1); i++) {
+        pthread_join(p[i].thread, NULL);
+        assert_int_equal(p[i].divided, size > 1);
+        /* the neighbour's record is there for its axis */
+        if (size > 1)
+            assert_true(p[i].own_bodies <= spec->model.nbody / size + spec->nrank / 8 + 9);
+    }
+    assert_int_equal(thread_hosts_end(), 0);
+    return p;
+}
+
+static void end(struct process *p)
+{
+    for (int i = 0; i < THREAD_HOSTS; i++) arena_destroy(p[i].arena);
+}
+
+static void same_checks(const struct run_result *a, const struct run_result *b)
+{
+    assert_int_equal(a->status, b->status);
+    assert_string_equal(a->text, b->text);
+    assert_int_equal(a->nerror, b->nerror);
+    for (int i = 0; i < a->nerror; i++) {
+        assert_string_equal(a->error[i].quantity, b->error[i].quantity);
+        assert_string_equal(a->error[i].reference, b->error[i].reference);
+        assert_memory_equal(&a->error[i].relative, &b->error[i].relative, sizeof(double));
+        assert_memory_equal(&a->error[i].tolerance, &b->error[i].tolerance, sizeof(double));
+    }
+}
+
+static void every_number_of_processes(const char *const *setting)
+{
+    struct plan plan;
+    const struct run_spec spec = spec_with(&plan, setting);
+    const int wrong[] = {NOBODY, 0, spec.nrank / 2, spec.nrank - 1};
+    for (int k = 0; k < 4; k++) {
+        struct process *p = job(&spec, 0, wrong[k], false);
+        const struct run_result one = p[0].r;
+        assert_int_equal(one.status, wrong[k] == NOBODY ? RUN_OK : RUN_INVALID);
+        assert_int_equal(one.nerror, 1);
+        struct arena *arena = p[0].arena;
+        static double tau[MOST_BODIES], reference[MOST_BODIES];
+        memcpy(tau, p[0].tau, sizeof tau);
+        memcpy(reference, p[0].reference, sizeof reference);
+        for (int size = 2; size <= 5; size++) {
+            struct process *q = job(&spec, size, wrong[k], size % 2);
+            for (int i = 0; i < size; i++)
+                for (int b = q[i].first; b < q[i].end; b++) {
+                    assert_true(q[i].tau[b] == tau[b]);
+                    assert_true(q[i].reference[b] == reference[b]);
+                }
+            same_checks(&one, &q[0].r);
+            assert_int_equal(one.digest, q[0].r.digest);
+            assert_int_equal(one.makespan_ps, q[0].r.makespan_ps);
+            end(q);
+        }
+        arena_destroy(arena);
+    }
+    plan_free(&plan);
+}
+
+#define SETTINGS(...)                                                                              \
+    ((const char *const[MOST_SETTINGS]){"kernel=inverse", "level=loggp", __VA_ARGS__, NULL})
+
+static void a_chain_is_checked_in_parts(void **state)
+{
+    (void)state;
+    every_number_of_processes(SETTINGS("n=128"));
+    /* Large messages would shake hands, in the order of time. */
+    every_number_of_processes(
+        SETTINGS("n=131", "ranks=64", "machine.software.eager.limit=unlimited"));
+    every_number_of_processes(SETTINGS("n=64", "model.inertia=random", "model.external_force=3 N"));
+    every_number_of_processes(SETTINGS("n=64", "model.rate=0 rad/s", "kernel.precision=float"));
+    every_number_of_processes(SETTINGS("n=64", "model.base=moving",
+                                       "model.base_acceleration.angular=[1, 2, 3] rad/s^2"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_chain_is_checked_in_parts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
