@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "net/net_account.h"
 #include "net/net_internal.h"
 #include "net/net_router.h"
 #include "net/net_way.h"
@@ -177,7 +178,7 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     /* Zero, and so no memory of the computer until something passes: a machine of a few bytes of
      * text has 10^8 links. */
     n->njob = 1;
-    if (want_links) n->load = TAKE(a, n->nresource, struct link_load);
+    if (want_links) net_loads_make(n);
     return n->type->create(n, e) ? n : NULL;
 }
 

@@ -1,5 +1,6 @@
 /* net_auto_claims.c - what optimistic messages have claimed: where each is by its closed form, and
  * what stays of it when it has been delivered (net_auto.h). */
+#include "net/net_account.h"
 #include "net/net_auto.h"
 
 static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }

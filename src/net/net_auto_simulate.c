@@ -8,6 +8,7 @@
  * filled only when all are known, in the order of time. */
 #include <stdlib.h>
 
+#include "net/net_account.h"
 #include "net/net_auto.h"
 
 /* A packet, or its credits, in the FIFO behind pass `hop`, which it began to cross at `at`. */

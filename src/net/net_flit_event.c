@@ -6,6 +6,7 @@
  * lies a ring as long as the buffer; the slot of flit n holds the time of its arrival and later
  * that of its departure, which is the credit for flit n + buffer. A node sends its packets one
  * after the other, and an input port passes on one flit at a time. */
+#include "net/net_account.h"
 #include "net/net_flit.h"
 
 struct worm;

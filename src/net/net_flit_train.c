@@ -6,6 +6,7 @@
  * depends on grants already made. Whenever a packet's flits are known further at one resource,
  * those at its next resource, and those of the owner of the one before (credits), may be worked out
  * further. Events are only needed to allocate a resource: one per packet and resource. */
+#include "net/net_account.h"
 #include "net/net_flit.h"
 
 /* `count` flits, the first at `at`, the others `step` apart. */

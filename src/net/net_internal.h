@@ -67,6 +67,9 @@ struct net {
     bool port_private;
     int64_t in_flight;       /* messages accepted and not yet delivered */
     struct link_load *load;  /* (njob x nresource), NULL unless wanted; who each is: net_links */
+    /* of a network with more than NET_LINKS_WHOLE resources: which parts of NET_LOADS of them are
+     * in use; else NULL */
+    _Atomic bool *load_used;
     int njob;                /* whose messages are counted apart (net_count_jobs) */
     struct routing *routing; /* NULL: the topology's routes, cables all alike (net_way.h) */
     sim_ps *way;             /* (nrouter x nrouter) 1 + net_way, 0: not known; NULL: not kept */
@@ -152,19 +155,6 @@ static inline void net_arrive(struct net *n, struct net_message *m)
     n->in_flight--;
     if (n->path && !n->type->paths) net_path_whole(n, m);
     n->deliver(n->context, m);
-}
-
-/* net_account: resource was used for `busy` by m (or a part of it: messages 0) that waited `queue`
- * for it. */
-static inline void net_account(struct net *n, int resource, const struct net_message *m,
-                               int messages, int64_t bytes, sim_ps busy, sim_ps queue)
-{
-    if (!n->load) return;
-    struct link_load *l = &n->load[(m->id >> NET_ID_JOB) * n->nresource + resource];
-    l->messages += messages;
-    l->bytes += bytes;
-    l->busy_ps += busy;
-    l->queue_ps += queue;
 }
 
 #endif

@@ -11,6 +11,7 @@
  * injection port of a node with one sender needs none. */
 #include <stddef.h>
 
+#include "net/net_account.h"
 #include "net/net_path.h"
 #include "net/net_way.h"
 

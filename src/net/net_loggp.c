@@ -6,6 +6,7 @@
  * which is LogGP with G the time of a flit and L = R tau + end. Where the port has one sender,
  * whose messages come in the order of their ready times, the answer is known in net_send and costs
  * no event. */
+#include "net/net_account.h"
 #include "net/net_path.h"
 #include "net/net_way.h"
 

@@ -10,6 +10,7 @@
  * S is the length of the packet in flits at the rate of the link, or longer if it still comes in
  * slower. */
 #include "net/net_packet.h"
+#include "net/net_account.h"
 
 /* Second look of a resource at the same time: for packets that go where another has just made room.
  * Deliveries where a tail is delivered in the very moment in which the ejection port is granted.

@@ -4,6 +4,7 @@
  * Most looks find one lane that nobody disputes anything: its head gets the channel whose turn it
  * is and the way through the switch, and goes, in one step without lists and rounds. The times and
  * turns are those that the allocation of net_router_allocate.c comes to. */
+#include "net/net_account.h"
 #include "net/net_router_front.h"
 
 /* For whole packets and for flits apart: `whole` is constant in each. */

@@ -1,6 +1,7 @@
 /* net_router_source.c - packets from their nodes into the first lane, and the levels themselves. */
 #include <string.h>
 
+#include "net/net_account.h"
 #include "net/net_router_front.h"
 
 /* ---- sources ---- */

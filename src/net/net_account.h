@@ -1,0 +1,36 @@
+/* net_account.h - what passed over each link and port: accounts that the levels write at every
+ * step, read by net_links. */
+#ifndef NET_NET_ACCOUNT_H
+#define NET_NET_ACCOUNT_H
+
+#include <stdatomic.h>
+
+#include "net/net_internal.h"
+
+/* net_loads_make: the accounts of all resources for n->njob jobs, none of which is in use. */
+void net_loads_make(struct net *n);
+
+/* net_load: the account of a resource, number `at` of n->load, which is in use from now on. Threads
+ * that share a run have accounts of their own, but not parts of them. */
+enum { NET_LOADS = 1024 };
+static inline struct link_load *net_load(struct net *n, size_t at)
+{
+    if (n->load_used && !atomic_load_explicit(&n->load_used[at / NET_LOADS], memory_order_relaxed))
+        atomic_store_explicit(&n->load_used[at / NET_LOADS], true, memory_order_relaxed);
+    return &n->load[at];
+}
+
+/* net_account: resource was used for `busy` by m (or a part of it: messages 0) that waited `queue`
+ * for it. */
+static inline void net_account(struct net *n, int resource, const struct net_message *m,
+                               int messages, int64_t bytes, sim_ps busy, sim_ps queue)
+{
+    if (!n->load) return;
+    struct link_load *l = net_load(n, (m->id >> NET_ID_JOB) * n->nresource + resource);
+    l->messages += messages;
+    l->bytes += bytes;
+    l->busy_ps += busy;
+    l->queue_ps += queue;
+}
+
+#endif
