@@ -52,7 +52,9 @@ bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes)
     return ok;
 }
 
-/* On process 0 alone, which tells the others what follows from it. */
+/* On process 0 alone, which tells the others what follows from it. They are whole numbers, taken in
+ * the order of the processes, and not of their coming: the result is the same on each run, and it
+ * is the same for any number of processes. */
 static bool reduce(const struct hosts *h, int tag, enum hosts_reduction how, int64_t *value, int n)
 {
     int64_t other[MOST_SUMS];
@@ -78,6 +80,7 @@ bool hosts_largest(const struct hosts *h, int tag, int64_t *value, int n)
     return reduce(h, tag, HOSTS_LARGEST, value, n);
 }
 
+/* By the same tag: of two processes messages keep their order. */
 bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n)
 {
     return hosts_sum(h, tag, value, n) && hosts_tell(h, tag, value, (size_t)n * sizeof *value);

@@ -82,6 +82,7 @@ static struct rank_summary summarise(const struct run_result *r, int first, int 
     return u;
 }
 
+/* Stages beyond the run's own stay zero, so that the sums of two parts can be joined whole. */
 void rank_sums_make(const struct run_result *r, int first, int end, struct rank_sums *s)
 {
     *s = (struct rank_sums){0};
@@ -89,6 +90,7 @@ void rank_sums_make(const struct run_result *r, int first, int end, struct rank_
     s->ranks = summarise(r, first, end);
 }
 
+/* Of one stage: each kind of time by itself, and what was counted. */
 static void join_rows(struct stage_row *row, const struct stage_row *more)
 {
     spread_join(&row->compute, &more->compute);
@@ -102,6 +104,7 @@ static void join_rows(struct stage_row *row, const struct stage_row *more)
     work_add(&row->all.work, &more->all.work);
 }
 
+/* Extremes of what was not recorded are the neutral ones, so that nothing has to be asked. */
 void rank_sums_add(struct rank_sums *s, const struct rank_sums *more)
 {
     struct rank_summary *u = &s->ranks;
@@ -116,6 +119,7 @@ void rank_sums_add(struct rank_sums *s, const struct rank_sums *more)
     if (v->finish_max > u->finish_max) u->finish_max = v->finish_max;
 }
 
+/* Where the ranks were divided among processes, their sums are all there is. */
 struct stage_row stage_row_make(const struct run_result *r, int stage)
 {
     struct stage_row row = r->sums ? r->sums->stage[stage] : row_of(r, stage, 0, r->nrank);
@@ -123,6 +127,7 @@ struct stage_row stage_row_make(const struct run_result *r, int stage)
     return row;
 }
 
+/* As stage_row_make: what was joined before, or made now of all ranks. */
 struct rank_summary rank_summary_make(const struct run_result *r)
 {
     return r->sums ? r->sums->ranks : summarise(r, 0, r->nrank);
