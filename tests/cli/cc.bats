@@ -71,7 +71,7 @@ entries() {
     printf '\001' | dd of=note bs=1 seek=20 conv=notrunc status=none
     objcopy --update-section .note.mimdsim=note prog old
     fails_with 65 mimdsim mpirun -n 2 ./old
-    stderr_says "was made by another version of \`mimdsim cc\` (rules 1, here 4): compile it again"
+    stderr_says "was made by another version of \`mimdsim cc\` (rules 1, here 5): compile it again"
 }
 
 @test "an object of another compiler is refused by name" {
