@@ -74,7 +74,7 @@ out() { grep -qF "out: $1" seen || { echo "not there: $1"; grep -a 'out: ' seen;
     works mimdsim lab deadlock it
     answer it messages 3
     fails_with 1 mimdsim lab report it
-    grep -qF '0 of 3 right' it/report.html
+    grep -qF '0 of 4 right' it/report.html
     grep -q 'Program: deadlock: ' it/report.html
     ! grep -q '<script' it/report.html
     grep -qF 'no prediction yet' it/report.html
