@@ -6,7 +6,7 @@ start() {
     shift 2
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
     # What MPI's libraries keep to their end is no leak of ours.
-    ASAN_OPTIONS=${ASAN_OPTIONS-}:detect_leaks=0 timeout -k 5 120 "mpirun.$family" -n "$n" "$@"
+    ASAN_OPTIONS=${ASAN_OPTIONS-}:detect_leaks=0 timeout -k 5 240 "mpirun.$family" -n "$n" "$@"
 }
 
 # needs FAMILY: skip the test where this build or this host does not have it.
