@@ -362,7 +362,7 @@ static void what_cannot_be_run_is_refused(void **state)
     ask(&x, "mesh32x32", 1, 16, LEVEL_PACKET, "uniform", 4);
     x.q.most = 10000;
     assert_false(load_measure(&x.q, 1, false, &p, &e));
-    assert_true(e.kind == ERR_CONFIG && strstr(e.text, "expected at most 10000"));
+    assert_true(e.kind == ERR_CONFIG && strstr(e.text, "at most 10000 are allowed"));
     err_clear(&e);
     x.machine.network.buffer_flits = 1;
     assert_false(load_begin(&x.q, NULL, &s, x.a, &e));
