@@ -15,8 +15,8 @@
 #include "base/text.h"
 #include "hosts/hosts_copy.h"
 #include "run/campaign_hosts.h"
-#include "store/run_entries.h"
 #include "store/build.h"
+#include "store/run_entries.h"
 #include "study/level_choice.h"
 
 enum { TAG_LEVELS = 100, TAG_RUNS }; /* apart from those of run/campaign_hosts.c */

@@ -52,9 +52,8 @@ bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes)
     return ok;
 }
 
-/* On process 0 alone, which tells the others what follows from it. They are whole numbers, taken in
- * the order of the processes, and not of their coming: the result is the same on each run, and it
- * is the same for any number of processes. */
+/* On process 0 alone, which tells the others what follows from it. The values are whole numbers, so
+ * the result does not depend on the order, nor on how many processes they are divided among. */
 static bool reduce(const struct hosts *h, int tag, enum hosts_reduction how, int64_t *value, int n)
 {
     int64_t other[MOST_SUMS];
@@ -80,7 +79,7 @@ bool hosts_largest(const struct hosts *h, int tag, int64_t *value, int n)
     return reduce(h, tag, HOSTS_LARGEST, value, n);
 }
 
-/* By the same tag: of two processes messages keep their order. */
+/* One tag is enough: messages between two processes keep their order. */
 bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n)
 {
     return hosts_sum(h, tag, value, n) && hosts_tell(h, tag, value, (size_t)n * sizeof *value);

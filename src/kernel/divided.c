@@ -32,6 +32,12 @@ bool divided_fits(const struct run_spec *spec, unsigned keep)
            spec->nrank <= spec->model.nbody && leaves_the_plane(spec);
 }
 
+bool divided_all(const struct run_part *p, bool yes)
+{
+    int64_t no = !yes;
+    return p->sum(p->context, &no, 1) && no == 0;
+}
+
 bool divided_agree(const struct run_part *p, struct model *model, struct state *state)
 {
     int64_t v[3] = {model == NULL, model && !omission_still(model, state),

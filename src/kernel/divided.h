@@ -15,6 +15,9 @@
  * of them. */
 bool divided_fits(const struct run_spec *spec, unsigned keep);
 
+/* divided_all: whether all processes say `yes`; false also when one of them does not answer. */
+bool divided_all(const struct run_part *p, bool yes);
+
 /* divided_agree: what is known of all bodies only when every process has looked at its own: whether
  * some move, and whether all have an inertia to invert. `model` NULL: this process could not make
  * its part. False: one could not; then none has. */
@@ -24,8 +27,8 @@ bool divided_agree(const struct run_part *p, struct model *model, struct state *
  * does not answer. */
 bool divided_inverse(const struct run_part *p, struct scene *s);
 
-/* divided_worst: the largest of *difference and of *reference over all processes; what is no number
- * is larger than any. False as above. */
+/* divided_worst: the largest of *difference and of *reference over all processes; a NaN is larger
+ * than any number. False as above. */
 bool divided_worst(const struct run_part *p, double *difference, double *reference);
 
 #endif

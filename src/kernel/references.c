@@ -20,8 +20,8 @@
 
 enum { CRBA_MOST_DOFS = 512 };
 
-/* Largest difference and largest element (maximum norm), as in physics 8.2. A number that is none
- * makes the difference none. */
+/* Largest difference and largest element of the reference (maximum norm), as in physics 8.2. An
+ * infinity or a NaN among the answers makes the difference a NaN. */
 struct deviation {
     double difference, largest;
 };

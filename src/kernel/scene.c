@@ -79,6 +79,13 @@ static struct scene *scene_make(const struct run_spec *spec, unsigned keep,
     return NULL;
 }
 
+/* The last scene takes its place: order is kept by `used`, not by position. */
+static void give_away(struct program_cache *cache, int i)
+{
+    scene_destroy(cache->scene[i]);
+    cache->scene[i] = cache->scene[--cache->nscene];
+}
+
 /* Give the least recently used scene away, by the cache's own clock and no host time, until
  * there is room for one of `nbody` bodies. */
 static void make_room(struct program_cache *cache, int nbody)
@@ -91,23 +98,21 @@ static void make_room(struct program_cache *cache, int nbody)
             if (cache->scene[i]->used < cache->scene[oldest]->used) oldest = i;
         }
         if (cache->nscene == 0 || (cache->nscene < MOST_SCENES && bodies <= MOST_BODIES)) return;
-        /* The last one takes its place: order is kept by `used`, not by position. */
-        scene_destroy(cache->scene[oldest]);
-        cache->scene[oldest] = cache->scene[--cache->nscene];
+        give_away(cache, oldest);
     }
 }
 
-/* A scene depends on the model's description, on what is kept, on whether anything moves, and on
- * how many fixed bodies may be merged, which depends on P. Everything else of a spec may differ. */
-struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
-                         const struct run_part *part, struct err *e)
+/* The number of the cached scene that `spec` asks for, -1: none. A scene depends on the model's
+ * description, on what is kept, on whether anything moves, and on how many fixed bodies may be
+ * merged, which depends on P. Everything else of a spec may differ. */
+static int find(const struct program_cache *cache, const struct run_spec *spec, unsigned keep,
+                const struct run_part *part)
 {
-    cache->clock++;
     const int n = spec->model.nbody;
     const int first = part ? kernel_block(n, spec->nrank, part->first) : 0,
               end = part ? kernel_block(n, spec->nrank, part->end) : n;
     for (int i = 0; i < cache->nscene && !(keep & KEEP_SCENES); i++) {
-        struct scene *s = cache->scene[i];
+        const struct scene *s = cache->scene[i];
         /* P may leave fewer bodies to merge than the cached scene has merged. */
         if (s->mergeable != omission_mergeable(spec->nrank, keep, s->nbody, s->movable)) continue;
         /* What is at rest now may move after the first time step. */
@@ -116,15 +121,32 @@ struct scene *scene_take(struct program_cache *cache, const struct run_spec *spe
         if (!whole && (s->first != first || s->end != end)) continue;
         /* The whole description counts, field by field, so its bytes are compared. */
         if (s->keep != keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
-        s->used = cache->clock;
-        return s;
+        return i;
     }
-    struct scene *s = scene_make(spec, keep, part, e);
-    if (!s) return NULL;
-    /* Only when the new scene exists is an old one given away. */
-    make_room(cache, s->model->nbody);
-    s->used = cache->clock;
-    return cache->scene[cache->nscene++] = s;
+    return -1;
+}
+
+struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
+                         const struct run_part *part, struct err *e)
+{
+    cache->clock++;
+    int i = find(cache, spec, keep, part);
+    /* Process 0 may have given its part away for a run that it made alone. Then all make theirs
+     * again, so that they ask each other the same questions. */
+    if (part && !divided_all(part, i >= 0) && i >= 0) {
+        give_away(cache, i);
+        i = -1;
+    }
+    if (i < 0) {
+        struct scene *s = scene_make(spec, keep, part, e);
+        if (!s) return NULL;
+        /* Only when the new scene exists is an old one given away. */
+        make_room(cache, s->model->nbody);
+        i = cache->nscene++;
+        cache->scene[i] = s;
+    }
+    cache->scene[i]->used = cache->clock;
+    return cache->scene[i];
 }
 
 /* Room for an answer, and an arena to compute it with; NULL when it has been asked for before: the

@@ -48,7 +48,7 @@ struct process {
     struct hosts hosts;
     const struct run_spec *spec;
     int wrong, number;
-    bool sums;
+    bool sums, loses; /* a second run follows, before which process 0 gives its part away */
     struct arena *arena;
     struct run_result r;
     double tau[MOST_BODIES], reference[MOST_BODIES];
@@ -57,18 +57,14 @@ struct process {
 };
 
 /* As run_sharing, but for the wrong rank. */
-static void *execute(void *argument)
+static void execute_once(struct process *p, struct run_cache *cache, int number)
 {
-    struct process *p = argument;
-    struct run_cache *cache = run_cache_create();
     struct run_order order = {.hosts = p->hosts.size > 0 ? &p->hosts : NULL,
-                              .job_run = p->number, .sums = p->sums};
+                              .job_run = number, .sums = p->sums};
     struct arena *own = arena_create(), *scratch = arena_create();
     struct program_run run;
     struct err e;
     err_clear(&e);
-    thread_hosts_join(p->hosts.rank);
-    p->arena = arena_create();
     if (!run_open(p->spec, &order, cache, own, &run, &e)) fail_msg("%s", e.text);
     struct rank_program wrong = *run.rank;
     right = run.rank;
@@ -77,6 +73,7 @@ static void *execute(void *argument)
     if (p->wrong != NOBODY) run.rank = &wrong;
     p->divided = run.divided;
     const struct model *m = dynamics_run_of(&run)->job.model;
+    p->own_bodies = 0;
     for (int i = 0; i < m->nbody; i++) p->own_bodies += m->body[i].mass > 0;
     if (!run_attempts(&run, cache, p->arena, &p->r, &e)) fail_msg("%s", e.text);
     if (p->hosts.rank == 0 || run.divided) run.type->check(&run, scratch, &p->r);
@@ -89,24 +86,55 @@ static void *execute(void *argument)
     run_close(&run);
     arena_destroy(scratch);
     arena_destroy(own);
+}
+
+/* Process 0 makes a run alone whose scene leaves no room for others, as it does when ranks fail. */
+static void lose_part(const struct run_spec *spec, struct run_cache *cache)
+{
+    struct run_spec large = *spec;
+    struct run_order alone = {0};
+    struct arena *own = arena_create();
+    struct program_run run;
+    struct err e;
+    err_clear(&e);
+    large.nrank = 1;
+    large.model.nbody = (1 << 17) + 1;
+    if (!run_open(&large, &alone, cache, own, &run, &e)) fail_msg("%s", e.text);
+    run_close(&run);
+    arena_destroy(own);
+}
+
+static void *execute(void *argument)
+{
+    struct process *p = argument;
+    struct run_cache *cache = run_cache_create();
+    thread_hosts_join(p->hosts.rank);
+    p->arena = arena_create();
+    execute_once(p, cache, p->number);
+    if (p->loses) {
+        if (p->hosts.rank == 0) lose_part(p->spec, cache);
+        memset(&p->r, 0, sizeof p->r);
+        execute_once(p, cache, p->number + 1);
+    }
     run_cache_destroy(cache);
     return NULL;
 }
 
 /* The result of process 0 of `size`, 0: of one without a job. */
-static struct process *job(const struct run_spec *spec, int size, int wrong, bool sums)
+static struct process *job(const struct run_spec *spec, int size, int wrong, bool sums, bool loses)
 {
     static struct process p[THREAD_HOSTS];
     static int number;
     thread_hosts_begin();
     memset(p, 0, sizeof p);
-    number++;
+    number += 2;
     for (int i = 0; i < (size > 0 ? size : 1); i++) {
         p[i] = (struct process){.hosts = {i, size, &thread_hosts},
                                 .spec = spec,
                                 .wrong = wrong,
                                 .number = number,
-                                .sums = sums};
+                                .sums = sums,
+                                .loses = loses};
         assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
     }
     for (int i = 0; i < (size > 0 ? size : 1); i++) {
@@ -144,7 +172,7 @@ static void every_number_of_processes(const char *const *setting)
     const struct run_spec spec = spec_with(&plan, setting);
     const int wrong[] = {NOBODY, 0, spec.nrank / 2, spec.nrank - 1};
     for (int k = 0; k < 4; k++) {
-        struct process *p = job(&spec, 0, wrong[k], false);
+        struct process *p = job(&spec, 0, wrong[k], false, false);
         const struct run_result one = p[0].r;
         assert_int_equal(one.status, wrong[k] == NOBODY ? RUN_OK : RUN_INVALID);
         assert_int_equal(one.nerror, 1);
@@ -153,7 +181,7 @@ static void every_number_of_processes(const char *const *setting)
         memcpy(tau, p[0].tau, sizeof tau);
         memcpy(reference, p[0].reference, sizeof reference);
         for (int size = 2; size <= 5; size++) {
-            struct process *q = job(&spec, size, wrong[k], size % 2);
+            struct process *q = job(&spec, size, wrong[k], size % 2, false);
             for (int i = 0; i < size; i++)
                 for (int b = q[i].first; b < q[i].end; b++) {
                     assert_true(q[i].tau[b] == tau[b]);
@@ -185,10 +213,27 @@ static void a_chain_is_checked_in_parts(void **state)
                                        "model.base_acceleration.angular=[1, 2, 3] rad/s^2"));
 }
 
+static void a_part_that_was_given_away_is_made_again_by_all(void **state)
+{
+    (void)state;
+    struct plan plan;
+    const struct run_spec spec = spec_with(&plan, SETTINGS("n=64"));
+    struct process *p = job(&spec, 0, NOBODY, false, false);
+    const struct run_result one = p[0].r;
+    struct arena *arena = p[0].arena;
+    struct process *q = job(&spec, 3, NOBODY, false, true);
+    same_checks(&one, &q[0].r);
+    assert_int_equal(one.digest, q[0].r.digest);
+    end(q);
+    arena_destroy(arena);
+    plan_free(&plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_chain_is_checked_in_parts),
+        cmocka_unit_test(a_part_that_was_given_away_is_made_again_by_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
