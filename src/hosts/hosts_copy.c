@@ -74,13 +74,21 @@ bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n)
     return reduce(h, tag, HOSTS_SUM, value, n);
 }
 
-bool hosts_largest(const struct hosts *h, int tag, int64_t *value, int n)
+/* What process 0 has, on all. One tag is enough: messages between two processes keep their
+ * order. */
+static bool reduce_all(const struct hosts *h, int tag, enum hosts_reduction how, int64_t *value,
+                       int n)
 {
-    return reduce(h, tag, HOSTS_LARGEST, value, n);
+    return reduce(h, tag, how, value, n) && hosts_tell(h, tag, value, (size_t)n * sizeof *value);
 }
 
-/* One tag is enough: messages between two processes keep their order. */
 bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n)
 {
-    return hosts_sum(h, tag, value, n) && hosts_tell(h, tag, value, (size_t)n * sizeof *value);
+    return reduce_all(h, tag, HOSTS_SUM, value, n);
+}
+
+/* Of signed numbers, as sums are. */
+bool hosts_all_largest(const struct hosts *h, int tag, int64_t *value, int n)
+{
+    return reduce_all(h, tag, HOSTS_LARGEST, value, n);
 }

@@ -13,10 +13,11 @@ bool hosts_copy_in(const struct hosts *h, int from, int tag, void *data, size_t 
 /* hosts_tell: process 0's `data` to all; called by all. */
 bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes);
 
-/* hosts_sum, hosts_largest: value (n) summed over the processes, or the largest of them, on process
- * 0; called by all. hosts_all_sum: the sums on all processes. */
+/* hosts_sum: value (n) summed over the processes, on process 0; called by all. hosts_all_sum,
+ * hosts_all_largest: the sums, or the largest values, on all processes. False: one of them does not
+ * answer. */
 bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n);
-bool hosts_largest(const struct hosts *h, int tag, int64_t *value, int n);
 bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n);
+bool hosts_all_largest(const struct hosts *h, int tag, int64_t *value, int n);
 
 #endif

@@ -85,14 +85,12 @@ static bool receive_outputs(struct world *w, int from)
 /* The latest of all ranks, on all processes. */
 static bool find_makespan(struct world *w)
 {
-    const struct hosts *h = w->load->hosts;
     struct run_result *r = w->result;
     for (int i = w->first; i < w->first + w->nown; i++) {
         r->finish_ps[i] = w->vp[i].finish;
         if (r->finish_ps[i] > r->makespan_ps) r->makespan_ps = r->finish_ps[i];
     }
-    return hosts_largest(h, TAG_TIMES, &r->makespan_ps, 1) &&
-           hosts_tell(h, TAG_TIMES, &r->makespan_ps, sizeof r->makespan_ps);
+    return hosts_all_largest(w->load->hosts, TAG_TIMES, &r->makespan_ps, 1);
 }
 
 /* In rank order, as collect in world.c mixes it: from process to process, and back to the first. */
