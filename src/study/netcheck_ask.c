@@ -72,21 +72,32 @@ static void compare_messages(const struct netcheck_question *k, const sim_ps *ar
     answer->message_error = n > 0 ? sum / n : 0;
 }
 
+/* Whether packet i was born after the warm-up, and in the sample. */
+static bool in_sample(const struct netcheck_question *k, int i)
+{
+    return k->q.time[i] >= k->warm && (k->until == 0 || k->q.time[i] < k->until);
+}
+
 /* The latency that the reference calls "plat": from the creation of a packet to its arrival,
- * queueing at the source included, plus what its long channels take (`channel`). *last: when the
- * last of them arrived. */
-static double mean_latency(const struct netcheck_question *k, const sim_ps *arrival, sim_ps *last)
+ * queueing at the source included, plus what its long channels take (`channel`). */
+static double mean_latency(const struct netcheck_question *k, const sim_ps *arrival)
 {
     double sum = 0;
     int64_t n = 0;
-    *last = 0;
     for (int i = 0; i < k->q.nmessage; i++) {
-        if (k->q.time[i] < k->warm || (k->until > 0 && k->q.time[i] >= k->until)) continue;
+        if (!in_sample(k, i)) continue;
         sum += (double)(arrival[i] - k->q.time[i]) / NETCHECK_CYCLE_PS;
-        if (arrival[i] > *last) *last = arrival[i];
         n++;
     }
     return n > 0 ? sum / (double)n + k->channel : 0;
+}
+
+static sim_ps last_arrival(const struct netcheck_question *k, const sim_ps *arrival)
+{
+    sim_ps last = 0;
+    for (int i = 0; i < k->q.nmessage; i++)
+        if (in_sample(k, i) && arrival[i] > last) last = arrival[i];
+    return last;
 }
 
 /* Relative error against the band low .. high: 0 inside, else to its nearer end. A case with one
@@ -120,9 +131,8 @@ static void judge(const struct netcheck_question *k, const struct traffic_result
         return;
     }
     /* A played row has no reference, so it keeps the arrivals; another is judged at once. */
-    sim_ps last;
     answer->found =
-        k->latency ? mean_latency(k, r->arrival, &last) : (double)r->makespan / NETCHECK_CYCLE_PS;
+        k->latency ? mean_latency(k, r->arrival) : (double)r->makespan / NETCHECK_CYCLE_PS;
     if (row->played) answer->arrival = cycles_of(r->arrival, k->q.nmessage, k->rows);
     else answer->error = netcheck_error(row, answer->found);
     if (row->compared) compare_messages(k, r->arrival, answer);
@@ -205,9 +215,12 @@ bool netcheck_mean(struct netcheck_question *k, enum network_level level, double
     if (done) {
         answer->events += r.events;
         answer->deadlock = r.deadlock;
-        if (r.deadlock) text_copy(answer->why, sizeof answer->why, r.text);
-        else *latency = mean_latency(k, r.arrival, &k->last);
         done = !r.deadlock;
+        if (!done) text_copy(answer->why, sizeof answer->why, r.text);
+    }
+    if (done) {
+        *latency = mean_latency(k, r.arrival);
+        k->last = last_arrival(k, r.arrival);
     }
     arena_release(k->arena, mark);
     return done;
@@ -235,9 +248,8 @@ static int saturated(struct netcheck_question *k, enum network_level level, cons
         sizes_of(k);
         if (fits_buffers(k, level, answer) && play(k, level, &r, &e)) {
             /* A network in deadlock is saturated. */
-            sim_ps last;
-            verdict = r.deadlock ||
-                      mean_latency(k, r.arrival, &last) >= criterion * netcheck_empty_latency(k);
+            verdict =
+                r.deadlock || mean_latency(k, r.arrival) >= criterion * netcheck_empty_latency(k);
             answer->events += r.events;
         }
     }
