@@ -62,24 +62,28 @@ static bool shares_page(const struct program_run *r, const struct world_load *lo
     return true;
 }
 
-/* Taken one by one: all of it will be touched, so the arena may use large pages. What the computer
- * does not have is not taken: the sum goes on, to tell how much it is. NULL: with the error set. */
+/* The bytes that rank `i` works in, or those of what `tape` keeps of it where there is one. */
+static size_t workspace_of(const struct program_run *r, const struct tape *tape, int i)
+{
+    return tape ? tape_workspace(tape, i) : r->rank->workspace_bytes(r->job, i);
+}
+
+/* Taken one by one: all of it will be touched, so the arena may use large pages. Nothing is taken
+ * before the sum is known to be there. NULL: with the error set. */
 static char **make_workspaces(const struct program_run *r, const struct world_load *load,
                               const struct tape *tape, struct arena *a, struct err *e)
 {
-    const size_t room = size_available();
+    const struct tape *taped = tape && tape_whole(tape) ? tape : NULL;
     size_t sum = 0;
     int first, end;
-    char what[64], **w = TAKE(a, r->spec.nrank, char *);
+    char what[64];
     world_part(load, &first, &end);
-    for (int i = first; i < end; i++) {
-        const size_t own = tape && tape_whole(tape) ? tape_workspace(tape, i)
-                                                    : r->rank->workspace_bytes(r->job, i);
-        sum = size_sum(sum, own);
-        if (sum <= room) w[i] = arena_take(a, own);
-    }
+    for (int i = first; i < end; i++) sum = size_sum(sum, workspace_of(r, taped, i));
     snprintf(what, sizeof what, "what %d ranks of '%s' work in", end - first, r->type->name);
-    return size_in_memory(sum, "", 0, what, e) ? w : NULL;
+    if (!size_in_memory(sum, "", 0, what, e)) return NULL;
+    char **w = TAKE(a, r->spec.nrank, char *);
+    for (int i = first; i < end; i++) w[i] = arena_take(a, workspace_of(r, taped, i));
+    return w;
 }
 
 /* -1: the program does not promise any bound. */
