@@ -123,7 +123,7 @@ status_65() { mimdsim run speedup-t3e --set n=0; }
 status_66() { mimdsim run none; }
 status_69() { MIMDSIM_GNUPLOT= PATH=/none "$MIMDSIM" timeline fig8 --format picture; }
 status_70() { mimdsim run deadlock --quiet; }
-status_71() { (ulimit -v 300000 && mimdsim run speedup-t3e -j 1 --set n=65536 --set machine.topology.dims=64,32,32); }
+status_71() { (ulimit -v 300000 && mimdsim run speedup-t3e -j 1 --set n=50000 --set machine.topology.dims=64,32,32); }
 status_73() { mimdsim run speedup-t3e -o nowhere/x.db; }
 status_74() { mimdsim machines >/dev/full; }
 status_75() {

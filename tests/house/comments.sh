@@ -6,9 +6,10 @@ least=15
 commented='lab sim kernel net report study spec store machine comm base linalg measure plan run app io model dynamics mpi vp schedule guest hosts loader compile program host'
 cd "$HOUSE"
 
-# shares ROOM: "FILE LINES-WITH-COMMENT LINES" of each file of a room. Strings may hold what looks like a comment.
+# shares: "ROOM FILE LINES-WITH-COMMENT LINES" of each file. Strings may hold what looks like a comment.
 shares() {
-    mapfile -t files < <(sources '*.c' "src/$1")
+    local -a files
+    mapfile -t files < <(sources '*.c' src)
     awk '
     FNR == 1 { inside = 0 }
     {
@@ -28,24 +29,26 @@ shares() {
         lines[FILENAME]++
         comments[FILENAME] += carries
     }
-    END { for (file in lines) print file, comments[file], lines[file] }' "${files[@]}" | sort
+    END { for (file in lines) { split(file, part, "/"); print part[2], file, comments[file], lines[file] } }' "${files[@]}" | sort
 }
 
 if [ "${1-}" = --shares ]; then
-    for room in $(room_names); do
-        compgen -G "src/$room/*.c" >/dev/null || continue
-        shares "$room" | awk -v room="$room" -v least="$least" '
-            { comments += $2; lines += $3; if (100 * $2 < least * $3) low = low sprintf("    %4.1f %%  %s\n", 100 * $2 / $3, $1) }
-            END { printf "%-10s %4.1f %%  %d of %d lines\n%s", room, 100 * comments / lines, comments, lines, low }'
-    done
+    shares | awk -v least="$least" '
+        { comments[$1] += $3; lines[$1] += $4; if (100 * $3 < least * $4) low[$1] = low[$1] sprintf("    %4.1f %%  %s\n", 100 * $3 / $4, $2) }
+        END {
+            for (room in lines)
+                printf "%-10s %4.1f %%  %d of %d lines\n%s", room, 100 * comments[room] / lines[room], comments[room], lines[room], low[room]
+        }'
     exit
 fi
-for room in $commented; do
-    shares "$room" | awk -v room="$room" -v least="$least" '
-        { comments += $2; lines += $3 }
-        END {
-            if (lines == 0) print "src/" room ": no line was found"
-            else if (100 * comments < least * lines)
-                printf "src/%s: %.1f %% of %d lines carry comments, less than %d %%\n", room, 100 * comments / lines, lines, least
-        }'
-done | verdict
+shares | awk -v commented="$commented" -v least="$least" '
+    { comments[$1] += $3; lines[$1] += $4 }
+    END {
+        n = split(commented, room, " ")
+        for (i = 1; i <= n; i++) {
+            r = room[i]
+            if (lines[r] == 0) print "src/" r ": no line was found"
+            else if (100 * comments[r] < least * lines[r])
+                printf "src/%s: %.1f %% of %d lines carry comments, less than %d %%\n", r, 100 * comments[r] / lines[r], lines[r], least
+        }
+    }' | verdict

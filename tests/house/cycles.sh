@@ -1,7 +1,8 @@
 #!/bin/bash
 # cycles.sh - no file calls another that, over whatever way, calls it back: circles of objects by their symbols.
 . "$(dirname "$0")/house.bash"
-edges=$(archives | while read -r _ file; do "${NM:-nm}" -A -P "$file"; done | awk '
+mapfile -t files < <(archives | sed 's/^[^ ]* //')
+edges=$("${NM:-nm}" -A -P "${files[@]}" | awk '
 {
     object = $1 # "lib.a[file.o]:" or "file.o:"
     sub(/^.*\//, "", object); sub(/:$/, "", object)

@@ -37,13 +37,15 @@ clean_house() {
 
 # compile FOLDER: one archive a room. CC may be more than one word.
 compile() {
-    local room file
+    local room file changed
     for room in $(room_names); do
+        changed=
         for file in "$1/src/$room"/*.c; do
             [ "$file" -nt "${file%.c}.o" ] || continue
             ${CC:-cc} -std=gnu17 -w -fno-common -I"$1/src" -c "$file" -o "${file%.c}.o"
+            changed=yes
         done
-        ar cr "$1/lib$room.a" "$1/src/$room"/*.o
+        [ -z "$changed" ] || ar cr "$1/lib$room.a" "$1/src/$room"/*.o
     done
 }
 

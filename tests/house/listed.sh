@@ -4,14 +4,26 @@
 . "$(dirname "$0")/house.bash"
 cd "$HOUSE"
 {
-    sources '*.[chS]' src | while read -r file; do
-        grep -q -F -w -- "$file" "$(dirname "$file")/local.am" || echo "$file: not in $(dirname "$file")/local.am"
-    done
-    find tests -name 'test_*.c' -o -name '*.bats' | sort | while read -r file; do
-        grep -q -F -w -- "${file%.c}" "$(dirname "$file")/local.am" || echo "$file: not in $(dirname "$file")/local.am"
-    done
-    [ ! -d tests/data ] || find tests/data -type f ! -name README.md | sort | while read -r file; do
-        name=${file#tests/data/}
-        grep -q -s -F -e "$name" -e "${name%/*}/*" tests/data/README.md || echo "$file: not in tests/data/README.md"
-    done
+    { sources '*.[chS]' src; find tests -name 'test_*.c' -o -name '*.bats' | sort; } | awk '
+    {
+        list = name = $0
+        sub(/[^\/]*$/, "local.am", list)
+        if (!(list in seen)) {
+            seen[list] = 1
+            while ((getline line < list) > 0) {
+                n = split(line, word, /[ \t\\]+/)
+                for (i = 1; i <= n; i++) named[list, word[i]] = 1
+            }
+            close(list)
+        }
+        if (name ~ /^tests/) sub(/\.c$/, "", name)
+        if (!((list, name) in named)) print $0 ": not in " list
+    }'
+    [ ! -d tests/data ] || find tests/data -type f ! -name README.md | sort | awk '
+    BEGIN { while ((getline line < "tests/data/README.md") > 0) text = text line "\n" }
+    {
+        name = folder = substr($0, length("tests/data/") + 1)
+        sub(/\/[^\/]*$/, "", folder)
+        if (!index(text, name) && !index(text, folder "/*")) print $0 ": not in tests/data/README.md"
+    }'
 } | verdict

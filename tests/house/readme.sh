@@ -4,42 +4,38 @@
 . "$(dirname "$0")/house.bash"
 cd "$HOUSE"
 
-# sentence FILE: what the opening comment says after the dash, up to its first full stop.
-sentence() {
-    awk '
-    { line = $0; sub(/^\/\* [^ ]+ - /, "", line); sub(/^ \* ?/, "", line); sub(/^-- /, "", line) }
-    NR > 1 && (line == "" || /^[^ ]/) { exit }
-    { text = text (text == "" ? "" : " ") line; if (/\*\//) exit }
-    END { sub(/ *\*\/.*/, "", text); sub(/\. .*/, "", text); sub(/\.$/, "", text); print text }' "$1"
-}
-
-# room_files ROOM: its files, a .c beside the .h of its name, the header of the room's own name first.
-room_files() {
-    find "src/$1" -maxdepth 1 -type f \( -name '*.[chS]' -o -name '*.sql' \) ! -path src/store/schema.c \
-        ! -path src/store/build_id.c | sed 's|.*/||' | sort | awk -v room="$1" '
-        { file[NR] = $0; there[$0] = 1 }
-        END {
-            if ((room ".h") in there) one(room ".h")
-            for (i = 1; i <= NR; i++) if (!(file[i] in done)) one(file[i])
-        }
-        function one(name,   twin) {
-            twin = name
-            if (sub(/\.c$/, ".h", twin) && twin in there) name = twin
-            twin = name
-            done[name] = 1
-            if (sub(/\.h$/, ".c", twin) && twin in there) { done[twin] = 1; print name, twin } else print name
-        }'
-}
-
+# map: of each room its purpose and its files, a .c beside the .h of its name, the header of the room's own name first; of
+# each file what its opening comment says after the dash, up to its first full stop.
 map() {
-    local room header source purpose
-    for room in $(room_names); do
-        purpose=$(awk -v room="$room" '$1 == room { sub(/.*; */, ""); print }' "$ROOMS")
-        printf '\n## %s: %s\n\n' "$room" "$purpose"
-        room_files "$room" | while read -r header source; do
-            echo "- \`$header\`${source:+ \`$source\`} - $(sentence "src/$room/$header")"
-        done
-    done
+    local -a files
+    mapfile -t files < <(find src -mindepth 2 -maxdepth 2 -type f \( -name '*.[chS]' -o -name '*.sql' \) ! -path src/store/schema.c \
+        ! -path src/store/build_id.c | sort)
+    awk -v rooms="$ROOMS" '
+    FNR == 1 { opening = 1; split(FILENAME, part, "/"); file[part[2], ++count[part[2]]] = part[3]; there[part[2], part[3]] = 1 }
+    !opening { next }
+    { line = $0; sub(/^\/\* [^ ]+ - /, "", line); sub(/^ \* ?/, "", line); sub(/^-- /, "", line) }
+    FNR > 1 && (line == "" || /^[^ ]/) { opening = 0; next }
+    { text[FILENAME] = text[FILENAME] (text[FILENAME] == "" ? "" : " ") line; if (/\*\//) opening = 0 }
+    END {
+        while ((getline line < rooms) > 0) {
+            if (line ~ /^#/) continue
+            room = purpose = line
+            sub(/ .*/, "", room); sub(/.*; */, "", purpose)
+            printf "\n## %s: %s\n\n", room, purpose
+            if ((room, room ".h") in there) one(room, room ".h")
+            for (i = 1; i <= count[room]; i++) if (!((room, file[room, i]) in done)) one(room, file[room, i])
+        }
+    }
+    function one(room, name,   twin, said) {
+        twin = name
+        if (sub(/\.c$/, ".h", twin) && (room, twin) in there) name = twin
+        done[room, name] = 1
+        said = text["src/" room "/" name]
+        sub(/ *\*\/.*/, "", said); sub(/\. .*/, "", said); sub(/\.$/, "", said)
+        twin = name
+        if (sub(/\.h$/, ".c", twin) && (room, twin) in there) { done[room, twin] = 1; twin = " `" twin "`" } else twin = ""
+        print "- `" name "`" twin " - " said
+    }' "${files[@]}"
 }
 
 head_of_readme() { awk '/^## / { exit } { line[NR] = $0; n = NR } END { while (n && line[n] == "") n--; for (i = 1; i <= n; i++) print line[i] }' src/README.md; }

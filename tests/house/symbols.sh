@@ -2,12 +2,17 @@
 # symbols.sh - what the archives really use: symbols of rooms below alone, each defined once, and none of the calls that
 # would make a result depend on the host or jump out of a run.
 . "$(dirname "$0")/house.bash"
-table=$(archives | while read -r room file; do
-    "${NM:-nm}" -A -g "$file" | awk -v room="$room" '
-        { kind = $(NF - 1); name = $NF }
-        kind ~ /^[TDBRGSVC]$/ { print "defined", room, name }
-        kind ~ /^[Uvw]$/ { print "used", room, name }'
-done)
+list=$(archives)
+mapfile -t files < <(printf '%s\n' "$list" | sed 's/^[^ ]* //')
+table=$("${NM:-nm}" -A -g "${files[@]}" | awk -v list="$list" '
+    BEGIN {
+        n = split(list, line, "\n")
+        for (i = 1; i <= n; i++) room_of[substr(line[i], index(line[i], " ") + 1)] = substr(line[i], 1, index(line[i], " ") - 1)
+    }
+    NF < 2 { next }
+    { kind = $(NF - 1); name = $NF; room = room_of[substr($0, 1, index($0, ":") - 1)] }
+    kind ~ /^[TDBRGSVC]$/ { print "defined", room, name }
+    kind ~ /^[Uvw]$/ { print "used", room, name }')
 [ -n "$table" ]
 printf '%s\n' "$table" | sort -u | awk -v rooms="$ROOMS" '
 BEGIN {

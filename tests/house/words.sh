@@ -18,16 +18,12 @@ files=$(list)
 # standard term beside it in docs: most expensive, compare with, does not exist, cache, undone, per processor, omissions.
 private='dea''rest|hold[s]? (it|them) ag''ainst|he''ld against|to hold .* ag''ainst|is not there aft''er|put ba''ck|des''erves? a database'
 private="$private|what-if des""erves|not among o""urs|bodies a proc""essor|own step""pers|would make the paper tr""ue|good eno""ugh; the finest"
+# looked ARGUMENT...: what grep finds in the files named on standard input, all by few processes.
+looked() { xargs -r -d '\n' grep -H -n -I -E "$@" -- || [ $? -eq 123 ]; }
+there() { while read -r file; do [ ! -f "$file" ] || printf '%s\n' "$file"; done; }
 {
-    printf '%s\n' "$files" | while read -r file; do
-        [ ! -f "$file" ] || grep -H -n -I -E -e "$words" -e "$paths" -- "$file" || [ $? -eq 1 ]
-    done
-    printf '%s\n' "$files" | while read -r file; do
-        case $file in
-        ./README.md | README.md | ./docs/* | docs/* | ./plots/* | plots/* | ./scenarios/* | scenarios/*)
-            [ ! -f "$file" ] || grep -H -n -I -i -E -e "$private" -- "$file" || [ $? -eq 1 ] ;;
-        ./src/*.c | src/*.c) # strings only
-            [ ! -f "$file" ] || grep -H -n -I -i -E -e "\"[^\"]*($private)" -- "$file" || [ $? -eq 1 ] ;;
-        esac
-    done
+    printf '%s\n' "$files" | there | looked -e "$words" -e "$paths"
+    printf '%s\n' "$files" | sed -n -E '\,^(\./)?(README\.md|(docs|plots|scenarios)/.*)$,p' | there | looked -i -e "$private"
+    # strings only
+    printf '%s\n' "$files" | sed -n -E '\,^(\./)?src/.*\.c$,p' | there | looked -i -e "\"[^\"]*($private)"
 } | verdict
