@@ -39,6 +39,10 @@ char *arena_text(struct arena *a, const char *s);
 struct arena_mark arena_mark(struct arena *a);
 void arena_release(struct arena *a, struct arena_mark m);
 
+/* arena_touch: every page of what has been taken is there from now on, as for a program that has
+ * used its memory before; contents stay. */
+void arena_touch(struct arena *a);
+
 /* arena_peak: largest number of bytes ever in use [B]. */
 size_t arena_peak(const struct arena *a);
 

@@ -10,15 +10,6 @@
 
 /* --- one repetition --------------------------------------------------------------------------- */
 
-/* All memory of the rank is touched before the clock runs. */
-static void *make_workspace(const struct program_run *run, int rank, struct arena *scratch)
-{
-    const size_t bytes = run->rank->workspace_bytes(run->job, rank);
-    char *w = arena_take(scratch, bytes);
-    for (size_t i = 0; i < bytes; i += 4096) *(volatile char *)&w[i] = 0;
-    return w;
-}
-
 /* Each process learns those of all, so that all come to the same decisions. */
 static bool tell_facts(struct real *r, const struct host_times *t)
 {
@@ -62,10 +53,14 @@ bool real_repeat(struct real *r, bool judged, struct err *e)
     if (ok) {
         const struct rank_program *p = run.rank;
         const int rank = r->hosts != NULL ? r->hosts->rank : 0;
-        void *workspace = make_workspace(&run, rank, scratch);
+        void *workspace = arena_take(scratch, run.rank->workspace_bytes(run.job, rank));
         r->nstage = p->nstage;
         for (int i = 0; i < p->nstage; i++)
             text_copy(r->stage_name[i], sizeof r->stage_name[i], p->stage_name[i]);
+        /* A page that comes while the clock runs may cost more than all that is computed with it;
+         * what a program writes its answers to is memory as well. */
+        arena_touch(own);
+        arena_touch(scratch);
         struct comm *c =
             host_comm_run_begin(r->comm, p->timed, p->nstage, run.output, PROGRAM_OUTPUTS);
         /* People's own programs mark their time themselves: their copy of the image is not part of

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include <cmocka.h>
 
@@ -160,6 +161,31 @@ static void untouched_memory_costs_no_memory_of_the_host(void **state)
     arena_destroy(a);
 }
 
+/* Page faults of this process. */
+static long faults(void)
+{
+    struct rusage u;
+    getrusage(RUSAGE_SELF, &u);
+    return u.ru_minflt;
+}
+
+static void memory_that_was_touched_is_written_without_page_faults(void **state)
+{
+    (void)state;
+    const size_t size = (size_t)4 << 20;
+    struct arena *a = arena_create();
+    unsigned char *p[3];
+    for (int i = 0; i < 3; i++) p[i] = arena_take(a, size);
+    memset(p[1], 7, size / 2);
+    arena_touch(a);
+    assert_true(all_are(p[0], size, 0) && all_are(p[1], size / 2, 7));
+    const long before = faults();
+    for (int i = 0; i < 3; i++) memset(p[i], i + 1, size);
+    /* The sanitizer's own pages are few beside these 3,072, large pages or not. */
+    assert_true(faults() - before < 8);
+    arena_destroy(a);
+}
+
 static void an_empty_take_is_a_place_and_null_is_destroyed_in_peace(void **state)
 {
     (void)state;
@@ -180,6 +206,7 @@ int main(void)
         cmocka_unit_test(marks_nest_and_spare_what_was_taken_before),
         cmocka_unit_test(the_peak_is_the_largest_use_not_the_last),
         cmocka_unit_test(untouched_memory_costs_no_memory_of_the_host),
+        cmocka_unit_test(memory_that_was_touched_is_written_without_page_faults),
         cmocka_unit_test(an_empty_take_is_a_place_and_null_is_destroyed_in_peace),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
