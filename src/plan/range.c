@@ -96,11 +96,21 @@ static double rounded(double x)
     return value;
 }
 
-/* Even in the logarithm: a factor of two is as likely anywhere in the range. */
+/* Even in the logarithm: a factor of two is as likely anywhere in the range. Where the ratio or the
+ * difference of the ends is no double, by way of numbers that are. */
+static double value_at(const struct range *r, double u)
+{
+    const double ratio = r->high / r->low, width = r->high - r->low;
+    if (r->log)
+        return isfinite(ratio) ? r->low * exp(u * log(ratio))
+                               : exp((1 - u) * log(r->low) + u * log(r->high));
+    return isfinite(width) ? r->low + u * width : (1 - u) * r->low + u * r->high;
+}
+
 const char *range_text(const struct range *r, double u, struct arena *a)
 {
     char text[64];
-    double x = r->log ? r->low * exp(u * log(r->high / r->low)) : r->low + u * (r->high - r->low);
+    double x = value_at(r, u);
     x = r->field->kind == FIELD_REAL ? rounded(x) : round(x);
     /* Rounding must not leave the range. */
     x = fmin(fmax(x, r->low), r->high);

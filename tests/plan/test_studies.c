@@ -215,6 +215,21 @@ static void a_point_of_a_range_is_the_text_of_a_setting(void **state)
     arena_destroy(a);
 }
 
+/* Neither the difference nor the ratio of their ends is a double. */
+static void a_range_may_be_wider_than_a_double(void **state)
+{
+    (void)state;
+    static const struct field bare = {.key = "x", .kind = FIELD_REAL};
+    struct range r = {.key = "x", .field = &bare, .low = -1.6e308, .high = 1.6e308};
+    struct arena *a = arena_create();
+    assert_string_equal(range_text(&r, 0.5, a), "0");
+    assert_string_equal(range_text(&r, 0.75, a), "8e307");
+    r = (struct range){.key = "x", .field = &bare, .low = 1e-300, .high = 1e300, .log = true};
+    assert_string_equal(range_text(&r, 0.5, a), "1");
+    assert_string_equal(range_text(&r, 0.75, a), "1e150");
+    arena_destroy(a);
+}
+
 /* ---- what is refused ---- */
 
 #define OVER "  over: {kernel.solver: [cr, pcr-symmetric]}\n"
@@ -451,6 +466,7 @@ int main(void)
         cmocka_unit_test(a_setting_of_the_command_ends_the_search_of_its_key),
         cmocka_unit_test(another_value_of_a_run_is_a_run_of_its_own),
         cmocka_unit_test(a_point_of_a_range_is_the_text_of_a_setting),
+        cmocka_unit_test(a_range_may_be_wider_than_a_double),
         cmocka_unit_test(what_is_wrong_is_told_at_its_line),
         cmocka_unit_test(a_sample_too_large_is_refused_by_its_product),
         cmocka_unit_test(a_sample_has_at_most_forty_keys),
