@@ -289,6 +289,23 @@ static void order_points(struct compare *c)
     c->point = sorted;
 }
 
+/* Runs of a side on several machines are told apart by what they are called, on all sides. */
+static bool nothing_common(const struct compare *c, struct err *e)
+{
+    const char *several = NULL;
+    for (int i = 0; i < c->nside && several == NULL; i++)
+        if (c->side[i].machines) several = c->side[i].name;
+    if (several == NULL)
+        return err_set(e, ERR_NO_INPUT,
+                       "no two runs of all sides agree in what they were asked: nothing can be "
+                       "compared point by point");
+    return err_set(e, ERR_NO_INPUT,
+                   "'%.80s' has runs on several machines, so only runs on machines of the same name "
+                   "are compared, and the sides have no such runs that were asked the same; single "
+                   "runs are compared by their numbers: mimdsim compare 1 2 -o DB",
+                   several);
+}
+
 /* Settings of all sides first: what varies on any of them tells the points of all apart. */
 bool compare_make(struct compare *c, int n, const struct compare_side *side, struct err *e)
 {
@@ -305,10 +322,7 @@ bool compare_make(struct compare *c, int n, const struct compare_side *side, str
     if (!read_runs(&r, e)) return false;
     finish_cells(c);
     order_points(c);
-    if (c->ncommon == 0)
-        return err_set(e, ERR_NO_INPUT,
-                       "no two runs of all sides agree in what they were asked: nothing can be "
-                       "compared point by point");
+    if (c->ncommon == 0) return nothing_common(c, e);
     /* With ranks = n there are two keys, but one number says both. */
     bool apart = false;
     for (int i = 0; i < c->npoint; i++) apart = apart || strstr(c->point[i].name, "ranks ") != NULL;

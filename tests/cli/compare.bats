@@ -64,6 +64,16 @@ load helper
     sql_is c.db "SELECT count(*) FROM v_unlimited WHERE key IN ('machine.network.link.bandwidth', 'machine.node.copy.bandwidth')" 2
 }
 
+@test "a database of several machines says why none of its runs has a partner on a third" {
+    for machine in t3e-300 paragon cm-5; do
+        case $machine in cm-5) db=one.db ;; *) db=two.db ;; esac
+        works mimdsim run speedup-t3e -m $machine --set n=8 --set level=loggp -o $db --quiet
+    done
+    fails_with 66 mimdsim compare two.db one.db
+    stderr_says "'two.db' has runs on several machines, so only runs on machines of the same name are compared"
+    stderr_says 'single runs are compared by their numbers: mimdsim compare 1 2 -o DB'
+}
+
 @test "repeated runs have ratios with an interval" {
     for db in a b; do
         [ $db = a ] && cv='10 %' || cv='20 %'
