@@ -1,13 +1,12 @@
 /* cmd_accuracy.c - mimdsim accuracy: error against run time, for each ladder of a scenario.
  *
- * Order of a study's verb, here and in stability and explain --measure: measure, print for
- * people, store, draw, print the document. What fails late has still printed and stored what was
+ * Order of a study's verb, here and in stability and explain --measure: open the database and look
+ * at the folder, measure, print for people, store, draw, print the document. What fails late has still printed and stored what was
  * measured. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/arguments.h"
 #include "app/flag.h"
 #include "app/keep.h"
 #include "app/verb.h"
@@ -47,15 +46,13 @@ static bool read_within(const char *text, double *within, struct err *e)
 }
 
 /* Rows first, the figure from them: what is drawn is what is stored. */
-static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct err *e)
+static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct store *s,
+                          struct err *e)
 {
-    struct store *s = arguments_store(c, c->database, e);
-    if (!s) return false;
     struct text figure = {0};
     text_add(&figure, "accuracy-%s", r->scenario);
-    bool ok = keep_accuracy(s, r, e) && keep_draw(c, s, figure.s, e);
+    bool ok = keep_accuracy(s, r, e) && store_publish(s, e) && keep_draw(c, s, figure.s, e);
     text_free(&figure);
-    store_close(s);
     return ok;
 }
 
@@ -75,13 +72,15 @@ int cmd_accuracy(int argc, char **argv)
     struct plan_options o = common_plan(&c);
     struct arena *a = arena_create();
     struct accuracy_report r;
-    ok = ok && plan_read(&p, c.arg[0], &o, &e) &&
+    struct store *s = NULL;
+    ok = ok && plan_read(&p, c.arg[0], &o, &e) && (s = keep_open(&c, &e)) != NULL &&
          accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
     /* People see the table before drawing, which takes a second; a document must be the last
      * output. */
     if (ok && !c.json) accuracy_print(stdout, &r);
-    ok = ok && keep_and_draw(&c, &r, &e);
+    ok = ok && keep_and_draw(&c, &r, s, &e);
     if (ok && c.json) accuracy_print_json(stdout, &r);
+    store_close(s);
     arena_destroy(a);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

@@ -15,6 +15,7 @@
 #include "report/compare.h"
 #include "report/figure_text.h"
 #include "report/how_sure.h"
+#include "report/report.h"
 #include "run/run.h"
 #include "store/store.h"
 #include "store/swept.h"
@@ -306,7 +307,10 @@ static bool answer(struct request *r, struct err *e)
     struct compare c;
     const struct common *common = r->common;
     bool makes;
-    if (!look_at_sides(r, &makes, e) || (makes && own_store(r, true, e) == NULL)) return false;
+    if (!look_at_sides(r, &makes, e)) return false;
+    /* Runs that are made first would be made for a picture that has no place. */
+    if (makes && (!report_folder_check(common->directory, e) || own_store(r, true, e) == NULL))
+        return false;
     for (int i = 0; i < common->narg; i++)
         if (!add_side(r, i, common->arg[i], e)) return false;
     bool ok = compare_make(&c, r->nside, r->side, e);

@@ -419,15 +419,14 @@ static void tell_errors(const struct common *c, const struct plan *p)
     store_close(s);
 }
 
-static bool keep_and_draw(const struct common *c, const struct savings *all, struct err *e)
+static bool keep_and_draw(const struct common *c, const struct savings *all, struct store *s,
+                          struct err *e)
 {
     struct text figure = {0};
-    struct store *s = arguments_store(c, c->database, e);
     text_add(&figure, "omissions-%s", all->scenario);
-    bool ok = s && savings_store(s, all, e);
+    bool ok = savings_store(s, all, e) && store_publish(s, e);
     ok = ok && (all->n == 0 || keep_draw(c, s, figure.s, e));
     text_free(&figure);
-    store_close(s);
     return ok;
 }
 
@@ -458,7 +457,8 @@ int cmd_explain(int argc, char **argv)
     bool ok = plan_read(&p, c.arg[0], &o, &e);
     struct run_estimate *r = memory_zeroed(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
     /* calloc of 1: an empty plan still has an array. */
-    ok = ok && r && estimate_all(&p, r, &e);
+    struct store *s = ok && measure ? keep_open(&c, &e) : NULL;
+    ok = ok && (!measure || s) && r && estimate_all(&p, r, &e);
     /* Too large for the stack: a row for every omission. */
     struct savings *all = memory_zeroed(1, sizeof *all);
     if (ok && !c.json) print_text(&p, r);
@@ -466,8 +466,9 @@ int cmd_explain(int argc, char **argv)
     /* The table first: measuring takes seconds to minutes. */
     ok = ok && (!measure || savings_measure(&p, r, all, &e));
     if (ok && measure && !c.json) savings_print(stdout, all);
-    ok = ok && (!measure || keep_and_draw(&c, all, &e));
+    ok = ok && (!measure || keep_and_draw(&c, all, s, &e));
     if (ok && c.json) print_json(&p, r, measure ? all : NULL);
+    store_close(s);
     free(all);
     free(r);
     plan_free(&p);

@@ -235,7 +235,7 @@ static bool read_plan(struct request *r)
 
 static bool answer(struct request *r)
 {
-    if (!read_plan(r)) return false;
+    if (!read_plan(r) || !report_folder_check(r->common->directory, r->err)) return false;
     r->store = arguments_store(r->common, r->common->database, r->err);
     /* Rows first: table and picture are made of them. */
     return r->store && make_runs(r, r->plan.run, r->plan.nrun) && make_background(r) &&

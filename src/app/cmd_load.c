@@ -6,6 +6,7 @@
 #include "app/keep.h"
 #include "app/load_curve.h"
 #include "app/verb.h"
+#include "report/report.h"
 
 static const char doc[] =
     "Offer random traffic to the network of each MACHINE and measure latency (mean, median, 99th "
@@ -41,7 +42,8 @@ static bool load_all(const struct common *c, struct load_options *o, struct aren
     if (!refuse_useless(c, e) || !load_options_levels(c->level, o, a, e) ||
         !load_curves_make(c, o, &list, &n, a, e))
         return false;
-    struct store *s = arguments_store(c, c->database, e);
+    struct store *s =
+        report_folder_check(c->directory, e) ? arguments_store(c, c->database, e) : NULL;
     if (!s) return false;
     /* the picture is drawn from the rows, as `mimdsim plot` would draw it */
     bool ok = load_curves_measure(c, o, list, n, s, e);

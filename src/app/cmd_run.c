@@ -19,6 +19,7 @@
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/memory.h"
+#include "report/report.h"
 #include "run/interrupt.h"
 #include "run/run.h"
 #include "spec/run_label.h"
@@ -273,14 +274,19 @@ static bool is_single(const struct plan *p, const struct asked *asked, const str
     return p->nrun == 1 && !job->on && !k->spread && asked->uncertainty.n == 0 && p->search == NULL;
 }
 
+/* Whether the rows are followed by an answer: for people, and not of a part of the runs. */
+static bool is_answered(const struct plan *p, const struct asked *asked)
+{
+    const struct run_table_look *look = &asked->look;
+    return p->answer != NULL && !look->json && !look->csv && look->columns == NULL &&
+           asked->part.shard.of == 0 && asked->part.point == NULL;
+}
+
 /* The question's answer behind the rows, for people: a sentence, then the picture. */
 static bool answer_question(const struct common *c, const struct plan *p, const struct asked *asked,
                             struct store *s, struct err *e)
 {
-    const struct run_table_look *look = &asked->look;
-    if (p->answer == NULL || look->json || look->csv || look->columns != NULL) return true;
-    /* A part of the runs answers nothing. */
-    if (asked->part.shard.of > 0 || asked->part.point != NULL) return true;
+    if (!is_answered(p, asked)) return true;
     struct text said = {0};
     struct arena *a = arena_create();
     const struct answer *x = answer_read(p, s, a, e);
@@ -304,6 +310,7 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     if (!c->quiet) say_unused(p);
     /* A robot that cannot be read is told before a database is made. */
     if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
+    if (is_answered(p, asked) && !report_folder_check(c->directory, e)) return false;
     k->whole = is_single(p, asked, job, k);
     k->store = k->whole ? arguments_store_whole(c, c->database, e)
                         : arguments_store(c, c->database, e);

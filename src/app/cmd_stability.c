@@ -21,15 +21,13 @@ static const char doc[] =
     "Example: mimdsim stability\n";
 
 /* The charts have the scenario's name, or "suite". */
-static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
+static bool keep_and_draw(const struct common *c, const struct stability_report *r,
+                          struct store *s, struct err *e)
 {
-    struct store *s = arguments_store(c, c->database, e);
-    if (!s) return false;
     struct text figure = {0};
     text_add(&figure, "stability-%s", r->suite);
-    bool ok = keep_stability(s, r, e) && keep_draw(c, s, figure.s, e);
+    bool ok = keep_stability(s, r, e) && store_publish(s, e) && keep_draw(c, s, figure.s, e);
     text_free(&figure);
-    store_close(s);
     return ok;
 }
 
@@ -47,11 +45,13 @@ int cmd_stability(int argc, char **argv)
     struct stability_report r;
     bool ok = c.narg == 0 || plan_read(&p, c.arg[0], &o, &e);
     const struct stability_options how = {.workers = c.jobs, .quiet = c.quiet};
-    ok = ok && stability_measure(p.run, p.nrun, &how, a, &r, &e);
+    struct store *s = ok ? keep_open(&c, &e) : NULL;
+    ok = ok && s && stability_measure(p.run, p.nrun, &how, a, &r, &e);
     /* The table before the drawing; a document last. */
     if (ok && !c.json) stability_print(stdout, &r);
-    ok = ok && keep_and_draw(&c, &r, &e);
+    ok = ok && keep_and_draw(&c, &r, s, &e);
     if (ok && c.json) stability_print_json(stdout, &r);
+    store_close(s);
     arena_destroy(a);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

@@ -198,6 +198,12 @@ static void find_path(struct shown *t)
     text_free(&config);
 }
 
+/* Nothing goes into the folder. */
+static bool only_prints(const struct common *c)
+{
+    return c->format != NULL ? strcmp(c->format, "text") == 0 : c->json;
+}
+
 /* The first point of a scenario, run now with its spans, into a database in memory: the picture
  * is drawn by a query. */
 static bool from_scenario(struct shown *t)
@@ -205,6 +211,10 @@ static bool from_scenario(struct shown *t)
     struct plan plan = {0};
     struct plan_options o = common_plan(t->common);
     if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
+    if (!only_prints(t->common) && !report_folder_check(t->common->directory, t->e)) {
+        plan_free(&plan);
+        return false;
+    }
     /* The first point only: a timeline of a sweep would be unreadable. */
     struct run_spec spec = plan.run[0];
     /* Recording is switched on whatever the scenario says. */

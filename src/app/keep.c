@@ -4,8 +4,17 @@
  * half new. */
 #include "app/keep.h"
 
+#include "app/arguments.h"
 #include "app/levels.h"
 #include "report/report.h"
+
+struct store *keep_open(const struct common *c, struct err *e)
+{
+    struct store *s =
+        report_folder_check(c->directory, e) ? arguments_store_whole(c, c->database, e) : NULL;
+    if (s != NULL) store_show(s);
+    return s;
+}
 
 /* Ladders and choices together: a choice refers to a rung. */
 bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err *e)

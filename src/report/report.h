@@ -48,6 +48,10 @@ bool report_figure_run(struct store *s, const char *data_dir, const char *name, 
  * ERR_CREATE. */
 bool report_folder(const char *dir, struct err *e);
 
+/* report_folder_check: whether report_folder could make `dir`, or files could be made in it, for a
+ * verb that computes first: nothing is made. Returns false with ERR_CREATE. */
+bool report_folder_check(const char *dir, struct err *e);
+
 /* report_figures: the names of all figures in data_dir/plots, sorted; returns how many; names owned
  * by the caller (free each and the array). */
 int report_figures(const char *data_dir, char ***name);

@@ -183,6 +183,28 @@ bool report_folder(const char *dir, struct err *e)
     return ok;
 }
 
+/* The folder itself, or what is there of those above it, has to take new files. */
+bool report_folder_check(const char *dir, struct err *e)
+{
+    char *path = memory_text(dir);
+    const bool there = access(path, F_OK) == 0;
+    for (char *slash; access(path, F_OK) != 0 && errno == ENOENT; *slash = '\0')
+        if ((slash = strrchr(path, '/')) == NULL || slash == path) break;
+    /* nothing is left of a name without a folder: it would be made here, or in the root */
+    if (access(path, F_OK) != 0 && errno == ENOENT) strcpy(path, *path == '/' ? "/" : ".");
+    struct stat info;
+    bool ok = true;
+    if (there && stat(path, &info) == 0 && !S_ISDIR(info.st_mode))
+        ok = err_set(e, ERR_CREATE, "%s is not a folder", dir);
+    else if (stat(path, &info) == 0 && !S_ISDIR(info.st_mode))
+        ok = err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(ENOTDIR));
+    else if (access(path, W_OK | X_OK) != 0)
+        ok = err_set(e, ERR_CREATE, "cannot make %s %s: %s", there ? "files in" : "folder", dir,
+                     strerror(errno));
+    free(path);
+    return ok;
+}
+
 /* Nothing to draw. A folder that was made for it is removed again. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {

@@ -89,10 +89,6 @@ struct store {
 /* store_forget: the prepared statements are prepared anew when they are used again. */
 void store_forget(struct store *s);
 
-/* store_show: from here on the database shows all its tables and views; nothing to do where it
- * does. Not within a transaction. */
-void store_show(struct store *s);
-
 /* store_statement: the prepared statement, reset and without bindings; NULL with the error set. */
 sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e);
 

@@ -38,6 +38,10 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e);
  * with ERR_CREATE, ERR_IO, or as store_open and store_merge (merge.h). */
 bool store_publish(struct store *s, struct err *e);
 
+/* store_show: from here on a new database of STORE_WHOLE has all its tables and views, not those of
+ * runs alone; others: nothing to do. Not within a transaction. */
+void store_show(struct store *s);
+
 /* store_remark: a sentence for the user about how the database was opened, NULL: nothing to say. */
 const char *store_remark(const struct store *s);
 

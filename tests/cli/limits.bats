@@ -128,6 +128,28 @@ X
     [ "${lines[6]}" = '0 query mnt/a.db SELECT count(*) FROM run ' ]
 }
 
+@test "verbs that compute first look before it at the places of their database and figures" {
+    printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'kernel: dynamics' 'n: 4' 'ranks: 2' >small.yaml
+    sed 's/^ranks:.*/ranks: [1, 2]/; $a answer: {of: ranks, least: makespan}' small.yaml >asked.yaml
+    cp small.yaml file
+    for words in 'accuracy small.yaml' 'stability small.yaml' 'explain small.yaml --measure' 'run asked.yaml' 'timeline small.yaml' \
+        'load t3e-300' 'compare t3e-300 paragon --on small.yaml' 'interference neighbours'; do
+        for place in '--dir file' '--dir file/x/y' '-o file/x.db'; do
+            case $words$place in timeline*-o*) continue ;; esac
+            # shellcheck disable=SC2086
+            fails_with 73 mimdsim $words $place
+            case $place in
+            '--dir file') [ "$stderr" = 'mimdsim: file is not a folder' ] ;;
+            '-o file/x.db') stderr_says 'cannot make database file/x.db: Not a directory' ;;
+            *) [ "$stderr" = 'mimdsim: cannot make folder file/x/y: Not a directory' ] ;;
+            esac || { echo "$words $place"; show; return 1; }
+            # no row of a table, and no file
+            [ -z "$output" ] || { echo "$words $place"; show; return 1; }
+        done
+    done
+    [ ! -e mimdsim.db ] && [ ! -e figures ]
+}
+
 @test "a message of more packets than a level counts ends its run with both numbers" {
     # a schedule's messages have sizes and no bytes
     printf '%s\n' 'num_ranks 2' 'rank 0 {' 's: send 3221225472b to 1' '}' 'rank 1 {' 'r: recv 3221225472b from 0' '}' >big.goal
