@@ -1,8 +1,8 @@
 /* cmd_accuracy.c - mimdsim accuracy: error against run time, for each ladder of a scenario.
  *
  * Order of a study's verb, here and in stability and explain --measure: open the database and look
- * at the folder, measure, print for people, store, draw, print the document. What fails late has still printed and stored what was
- * measured. */
+ * at the folder, measure, print for people, store, draw, print the document. What fails late has
+ * still printed and stored what was measured. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

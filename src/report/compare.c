@@ -300,9 +300,9 @@ static bool nothing_common(const struct compare *c, struct err *e)
                        "no two runs of all sides agree in what they were asked: nothing can be "
                        "compared point by point");
     return err_set(e, ERR_NO_INPUT,
-                   "'%.80s' has runs on several machines, so only runs on machines of the same name "
-                   "are compared, and the sides have no such runs that were asked the same; single "
-                   "runs are compared by their numbers: mimdsim compare 1 2 -o DB",
+                   "'%.80s' has runs on several machines, so only runs on machines of the same "
+                   "name are compared, and the sides have no such runs that were asked the same; "
+                   "single runs are compared by their numbers: mimdsim compare 1 2 -o DB",
                    several);
 }
 
