@@ -231,7 +231,8 @@ __attribute__((no_sanitize_address)) void arena_touch(struct arena *a)
     for (struct block *b = a->top; b; b = b->below)
         for (size_t i = 0; i < b->used; i += PAGE) {
             volatile char *p = (char *)b + i;
-            *p = *p;
+            const char held = *p;
+            *p = held;
         }
 }
 
