@@ -14,6 +14,8 @@ scenes=("${@:3}")
 [ ${#scenes[@]} -gt 0 ] || { [ $# -gt 0 ] && scenes=(campaign spans threads merge upgrade paper mpi) || scenes=(campaign merge upgrade); }
 : "${MIMDSIM_SRCDIR:=$(cd "$(dirname "$0")/../.." && pwd)}" "${MIMDSIM:=$MIMDSIM_SRCDIR/mimdsim}" "${MIMDSIM_DATA:=$MIMDSIM_SRCDIR}"
 export MIMDSIM_DATA
+# With sanitizers a moment takes several times as long, and strikes the same places.
+if [ $# -eq 0 ] && "$MIMDSIM" --version | grep -q 'with sanitizers'; then count=4; fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
