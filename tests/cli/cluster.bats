@@ -13,7 +13,7 @@ teardown() { stop_slurm; }
     works mimdsim run own.yaml -o whole.db --quiet
     start_slurm "$PWD/slurm" || { cat slurm/*.log; false; }
     # A program that is not there: the last job never starts, and the script ends all the same.
-    ! MIMDSIM=/nowhere/mimdsim timeout 60 sh "$MIMDSIM_SRCDIR/examples/cluster/slurm-array.sh" own.yaml all.db 2
+    ! MIMDSIM=/nowhere/mimdsim timeout 600 sh "$MIMDSIM_SRCDIR/examples/cluster/slurm-array.sh" own.yaml all.db 2
     [ ! -e all.db ]
     grep '/nowhere/mimdsim' all.db.shard-1.log
     # A shard that was killed before.
@@ -21,7 +21,7 @@ teardown() { stop_slurm; }
     sleep 0.1
     kill -9 $! 2>/dev/null || true
     wait $! || true
-    works timeout 100 sh "$MIMDSIM_SRCDIR/examples/cluster/slurm-array.sh" own.yaml all.db 2
+    works timeout 600 sh "$MIMDSIM_SRCDIR/examples/cluster/slurm-array.sh" own.yaml all.db 2
     diff <(rows whole.db) <(rows all.db)
 }
 
@@ -32,10 +32,10 @@ teardown() { stop_slurm; }
     mkdir path
     ln -s "$MIMDSIM" path/mimdsim
     export PATH=$PWD/path:$PATH
-    works timeout 100 snakemake -s "$MIMDSIM_SRCDIR/examples/cluster/Snakefile" --cores 2 --config scenario=own.yaml shards=2
+    works timeout 600 snakemake -s "$MIMDSIM_SRCDIR/examples/cluster/Snakefile" --cores 2 --config scenario=own.yaml shards=2
     diff <(rows whole.db) <(rows campaign.db)
     rm campaign.db shard-2.db
-    works timeout 100 snakemake -s "$MIMDSIM_SRCDIR/examples/cluster/Snakefile" --cores 2 --config scenario=own.yaml shards=2
+    works timeout 600 snakemake -s "$MIMDSIM_SRCDIR/examples/cluster/Snakefile" --cores 2 --config scenario=own.yaml shards=2
     [[ $stderr == *shard-2.db* && $stderr != *"output: shard-1.db"* ]]
     diff <(rows whole.db) <(rows campaign.db)
 }

@@ -9,7 +9,7 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
 refused() {
     local expected=$1 text=$2
     shift 2
-    run --separate-stderr -- timeout 60 "$@"
+    run --separate-stderr -- timeout 600 "$@"
     [ "$status" -eq "$expected" ] || { echo "expected $expected: $*"; show; return 1; }
     case $stderr in *"internal error"* | *Sanitizer* | *"runtime error:"*) show; return 1 ;; esac
     [[ $stderr == *"$text"* ]] || { echo "not told: $text"; show; return 1; }
@@ -64,10 +64,10 @@ refused() {
         CREATE TABLE notes (run_id INTEGER, note TEXT); INSERT INTO notes VALUES (1, 'the first');
         CREATE INDEX by_note ON notes (note)"
     for command in 'report a.db' 'claims a.db' 'check a.db' 'why a.db 1' 'compare a.db a.db'; do
-        run --separate-stderr -- timeout 60 "$MIMDSIM" $command
+        run --separate-stderr -- timeout 600 "$MIMDSIM" $command
         case $status in 0 | 66) ;; *) echo "$command"; show; return 1 ;; esac
     done
-    run --separate-stderr -- timeout 60 "$MIMDSIM" merge b.db a.db
+    run --separate-stderr -- timeout 600 "$MIMDSIM" merge b.db a.db
     [ "$status" -eq 0 ]
     # writers keep them
     works mimdsim run "$MIMDSIM_SRCDIR/tests/faults/small.yaml" -o a.db --quiet --set n=5

@@ -3,13 +3,13 @@
 
 load helper
 
-# soon COMMAND...: COMMAND must end by itself, within some seconds and in little memory.
+# soon COMMAND...: COMMAND must end by itself, soon even on a slow computer with sanitizers, and in little memory.
 soon() {
     if [ "${memory:-}" = "" ]; then
         memory=2000000
         (ulimit -v $memory; mimdsim --version) >/dev/null 2>&1 || memory=unlimited # sanitizers reserve more
     fi
-    (ulimit -v $memory; exec timeout 20 "$@")
+    (ulimit -v $memory; exec timeout 100 "$@")
 }
 
 @test "a pipe, a device, a folder and a socket are no files, whoever is asked to read them" {

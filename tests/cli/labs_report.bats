@@ -18,7 +18,7 @@ solved() {
 browse() {
     local browser
     browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || skip "no Chromium"
-    timeout 100 "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$PWD/profile" \
+    timeout 600 "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$PWD/profile" \
         --window-size="${width:-1200},900" --virtual-time-budget=3000 --dump-dom "file://$PWD/$1" >seen 2>browser-said || { tail browser-said; return 1; }
 }
 

@@ -29,7 +29,7 @@ huge() {
     huge
     for verb in explain 'run -o x.db'; do
         # shellcheck disable=SC2086
-        run --separate-stderr -- timeout 20 "$MIMDSIM" $verb huge.yaml --machine ideal --set n=130000000 --set machine.topology.dims='[16]'
+        run --separate-stderr -- timeout 600 "$MIMDSIM" $verb huge.yaml --machine ideal --set n=130000000 --set machine.topology.dims='[16]'
         [ "$status" -eq 78 ] || { show; return 1; }
         stderr_says 'bodies would take'
         stderr_says 'of memory; this computer has'
@@ -41,7 +41,7 @@ huge() {
     huge
     for job in '' 'jobs: [{name: one}, {name: two, kernel: broadcast, ranks: 8}]'; do
         printf '%s\n' "$job" >>huge.yaml
-        run --separate-stderr -- timeout 20 "$MIMDSIM" run huge.yaml -o "x$job.db" --machine t3e-300 --set kernel=broadcast \
+        run --separate-stderr -- timeout 600 "$MIMDSIM" run huge.yaml -o "x$job.db" --machine t3e-300 --set kernel=broadcast \
             --set kernel.message='1 GiB' --set ranks=128
         [ "$status" -eq 78 ] || { show; return 1; }
         stderr_says "what 128 ranks of 'broadcast' work in would take 275 GB of memory; this computer has"
@@ -168,13 +168,13 @@ many() { printf '%s\n' 'schema_version: 1' "$@" >many.yaml; }
 @test "of many runs not every rank is looked at before the first" {
     many 'machine: ideal' 'machine.topology: {family: torus, dims: [1048576]}' 'kernel: {name: allreduce, algorithm: hardware, message: 8 B}' \
         'machine.network.collective: {kinds: allreduce, operations: real, latency: 1 us, per_link: 1 us}' "ranks: [$(seq -s, 1000000 1002000)]"
-    works timeout 60 "$MIMDSIM" explain many.yaml
+    works timeout 600 "$MIMDSIM" explain many.yaml
     stdout_says 'collectives by the network of further runs: not looked at'
 }
 
 @test "lists that are a part of every run are counted before they fill the memory" {
     many 'machine: ideal' 'machine.topology.dims: [300000]' "machine.placement: {kind: list, list: [$(seq -s, 0 99999)]}" \
         'kernel: barrier' 'ranks: 4' "seed: [$(seq -s, 1 1000)]"
-    fails_with 78 timeout 60 "$MIMDSIM" check many.yaml
+    fails_with 78 timeout 600 "$MIMDSIM" check many.yaml
     stderr_says 'many.yaml: the lists of all runs, and the jobs beside each, take more than 64 MiB of text'
 }
