@@ -165,9 +165,15 @@ static bool write_script(struct figure *f, struct err *e)
     return ok;
 }
 
+static bool has_name(const char *dir, struct err *e)
+{
+    return *dir != '\0' || err_set(e, ERR_CREATE, "cannot make folder '': it has no name");
+}
+
 /* As mkdir -p. That a folder exists is no error; that a file has its name is one. */
 bool report_folder(const char *dir, struct err *e)
 {
+    if (!has_name(dir, e)) return false;
     char *path = memory_text(dir);
     for (char *slash = strchr(path + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
@@ -186,19 +192,21 @@ bool report_folder(const char *dir, struct err *e)
 /* The folder itself, or what is there of those above it, has to take new files. */
 bool report_folder_check(const char *dir, struct err *e)
 {
+    if (!has_name(dir, e)) return false;
     char *path = memory_text(dir);
+    const char *nearest = path;
     const bool there = access(path, F_OK) == 0;
     for (char *slash; access(path, F_OK) != 0 && errno == ENOENT; *slash = '\0')
         if ((slash = strrchr(path, '/')) == NULL || slash == path) break;
     /* nothing is left of a name without a folder: it would be made here, or in the root */
-    if (access(path, F_OK) != 0 && errno == ENOENT) strcpy(path, *path == '/' ? "/" : ".");
+    if (access(path, F_OK) != 0 && errno == ENOENT) nearest = *path == '/' ? "/" : ".";
     struct stat info;
     bool ok = true;
-    if (there && stat(path, &info) == 0 && !S_ISDIR(info.st_mode))
+    if (there && stat(nearest, &info) == 0 && !S_ISDIR(info.st_mode))
         ok = err_set(e, ERR_CREATE, "%s is not a folder", dir);
-    else if (stat(path, &info) == 0 && !S_ISDIR(info.st_mode))
+    else if (stat(nearest, &info) == 0 && !S_ISDIR(info.st_mode))
         ok = err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(ENOTDIR));
-    else if (access(path, W_OK | X_OK) != 0)
+    else if (access(nearest, W_OK | X_OK) != 0)
         ok = err_set(e, ERR_CREATE, "cannot make %s %s: %s", there ? "files in" : "folder", dir,
                      strerror(errno));
     free(path);

@@ -134,12 +134,13 @@ X
     cp small.yaml file
     for words in 'accuracy small.yaml' 'stability small.yaml' 'explain small.yaml --measure' 'run asked.yaml' 'timeline small.yaml' \
         'load t3e-300' 'compare t3e-300 paragon --on small.yaml' 'interference neighbours'; do
-        for place in '--dir file' '--dir file/x/y' '-o file/x.db'; do
+        for place in '--dir file' '--dir file/x/y' '--dir=' '-o file/x.db'; do
             case $words$place in timeline*-o*) continue ;; esac
             # shellcheck disable=SC2086
             fails_with 73 mimdsim $words $place
             case $place in
             '--dir file') [ "$stderr" = 'mimdsim: file is not a folder' ] ;;
+            '--dir=') [ "$stderr" = "mimdsim: cannot make folder '': it has no name" ] ;;
             '-o file/x.db') stderr_says 'cannot make database file/x.db: Not a directory' ;;
             *) [ "$stderr" = 'mimdsim: cannot make folder file/x/y: Not a directory' ] ;;
             esac || { echo "$words $place"; show; return 1; }
