@@ -33,10 +33,11 @@ shares() {
 }
 
 if [ "${1-}" = --shares ]; then
-    shares | awk -v least="$least" '
+    shares | awk -v rooms="$(room_names | tr '\n' ' ')" -v least="$least" '
         { comments[$1] += $3; lines[$1] += $4; if (100 * $3 < least * $4) low[$1] = low[$1] sprintf("    %4.1f %%  %s\n", 100 * $3 / $4, $2) }
         END {
-            for (room in lines)
+            n = split(rooms, name, " ")
+            for (i = 1; i <= n; i++) if ((room = name[i]) in lines)
                 printf "%-10s %4.1f %%  %d of %d lines\n%s", room, 100 * comments[room] / lines[room], comments[room], lines[room], low[room]
         }'
     exit

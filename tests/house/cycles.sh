@@ -1,7 +1,7 @@
 #!/bin/bash
 # cycles.sh - no file calls another that, over whatever way, calls it back: circles of objects by their symbols.
 . "$(dirname "$0")/house.bash"
-mapfile -t files < <(archives | sed 's/^[^ ]* //')
+read_archives
 edges=$("${NM:-nm}" -A -P "${files[@]}" | awk '
 {
     object = $1 # "lib.a[file.o]:" or "file.o:"

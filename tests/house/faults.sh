@@ -93,9 +93,11 @@ planted symbols 'room sim calls time,' 'echo "long time(long *); long k(void) { 
 rm -rf house
 cp -a clean house
 rm house/libnet.a
-if HOUSE=$place/house HOUSE_BUILD=$place/house bash "$HERE/symbols.sh" >/dev/null 2>&1; then
-    complain "symbols.sh does not miss an archive"
-fi
+for check in symbols cycles; do
+    if HOUSE=$place/house HOUSE_BUILD=$place/house bash "$HERE/$check.sh" >/dev/null 2>&1; then
+        complain "$check.sh does not miss an archive"
+    fi
+done
 
 planted cycles 'a circle of files' 'echo "int check_it(int); int k(int n) { return check_it(n); }" >>src/base/base.c; echo "int k(int); int c(int n) { return k(n); }" >>src/base/check.c'
 

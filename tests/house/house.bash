@@ -40,3 +40,9 @@ archives() {
             { echo "no archive of room $room in $HOUSE_BUILD" >&2; return 1; }
     done
 }
+
+# read_archives: the lines of archives into `list`, their files into the array `files`. Fails as archives.
+read_archives() {
+    list=$(archives)
+    mapfile -t files < <(printf '%s\n' "$list" | sed 's/^[^ ]* //')
+}

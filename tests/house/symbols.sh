@@ -2,8 +2,7 @@
 # symbols.sh - what the archives really use: symbols of rooms below alone, each defined once, and none of the calls that
 # would make a result depend on the host or jump out of a run.
 . "$(dirname "$0")/house.bash"
-list=$(archives)
-mapfile -t files < <(printf '%s\n' "$list" | sed 's/^[^ ]* //')
+read_archives
 table=$("${NM:-nm}" -A -g "${files[@]}" | awk -v list="$list" '
     BEGIN {
         n = split(list, line, "\n")

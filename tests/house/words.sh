@@ -18,8 +18,12 @@ files=$(list)
 # standard term beside it in docs: most expensive, compare with, does not exist, cache, undone, per processor, omissions.
 private='dea''rest|hold[s]? (it|them) ag''ainst|he''ld against|to hold .* ag''ainst|is not there aft''er|put ba''ck|des''erves? a database'
 private="$private|what-if des""erves|not among o""urs|bodies a proc""essor|own step""pers|would make the paper tr""ue|good eno""ugh; the finest"
-# looked ARGUMENT...: what grep finds in the files named on standard input, all by few processes.
-looked() { xargs -r -d '\n' grep -H -n -I -E "$@" -- || [ $? -eq 123 ]; }
+# looked ARGUMENT...: what grep finds in the files named on standard input, all by one process. Fails where it cannot look.
+looked() {
+    local -a file
+    mapfile -t file
+    [ ${#file[@]} -eq 0 ] || grep -H -n -I -E "$@" -- "${file[@]}" || [ $? -eq 1 ]
+}
 there() { while read -r file; do [ ! -f "$file" ] || printf '%s\n' "$file"; done; }
 {
     printf '%s\n' "$files" | there | looked -e "$words" -e "$paths"
