@@ -30,9 +30,9 @@ static const char doc[] =
     "\vThe same program text runs on the system's MPI as on virtual processors: built-in programs "
     "and kernels in one file, with the same checks and stages. Each task is simulated first; what "
     "deadlocks or fails there is not run. Then it is repeated; repetitions in which the system "
-    "took a processor away are not counted. They come in five bursts; the speed of the computer is "
-    "measured before and after each. The machine of the scenario has no effect "
-    "(docs/reality.md).\n\n"
+    "took a processor away, or page faults came that others did without, are not counted. They "
+    "come in five bursts; the speed of the computer is measured before and after each. The machine "
+    "of the scenario has no effect (docs/reality.md).\n\n"
     "--samples N: undisturbed repetitions that are wanted (default 30). --limit SECONDS: no "
     "further repetition of a task after this time (default 5).";
 

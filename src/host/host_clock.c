@@ -1,4 +1,5 @@
-/* host_clock.c - the host's clock, and how often the host took the processor away (host_comm.h). */
+/* host_clock.c - the host's clock, and how often the system interrupted this thread
+ * (host_comm.h). */
 #include <sys/resource.h>
 #include <time.h>
 
@@ -13,8 +14,23 @@ int64_t host_clock_ns(void)
 }
 
 /* Of this thread: MPI has threads of its own, which sleep and wake. */
-int64_t host_switches(void)
+static struct rusage own_usage(void)
 {
-    struct rusage u;
-    return getrusage(RUSAGE_THREAD, &u) == 0 ? u.ru_nivcsw : 0;
+    struct rusage u = {0};
+    getrusage(RUSAGE_THREAD, &u);
+    return u;
+}
+
+int64_t host_switches(void) { return own_usage().ru_nivcsw; }
+
+int64_t host_faults(void)
+{
+    const struct rusage u = own_usage();
+    return u.ru_minflt + u.ru_majflt;
+}
+
+int64_t host_interruptions(void)
+{
+    const struct rusage u = own_usage();
+    return u.ru_nivcsw + u.ru_minflt + u.ru_majflt;
 }

@@ -172,6 +172,7 @@ static void synchronise(struct host_comm *h)
     if (!h->one_clock) return;
     when = host_clock_ns() + LEAD_NS;
     need(h, h->hosts->call->reduce(HOSTS_LARGEST, &when, 1), "a reduction");
+    h->faults = host_faults(); /* the first messages of a job may bring pages */
     /* Spinning: sleeping would begin late by the time of a switch. */
     while (host_clock_ns() < when) continue;
     h->times.begin_ns = when;
@@ -187,12 +188,14 @@ static void mark(struct comm *c, int begin)
         h->times.stage_ns[h->stage] += now - h->mark_ns;
         h->times.end_ns = now;
         h->times.preempted = host_switches() - h->switches;
+        h->times.faults = host_faults() - h->faults;
         h->running = false;
         return;
     }
     h->stage = 0;
     h->running = true;
     h->switches = host_switches();
+    h->faults = host_faults();
     h->times.begin_ns = 0;
     synchronise(h);
     if (h->times.begin_ns == 0) h->times.begin_ns = host_clock_ns();
@@ -358,7 +361,7 @@ struct host_comm *host_comm_create(const struct hosts *hosts, struct err *e)
                             .size = hosts != NULL ? hosts->size : 1};
     h->one_clock = true;
     if (hosts == NULL) return h;
-    if (!hosts->call->lane->open(&h->lane, &h->largest_tag)) {
+    if (!hosts->call->lane->open(&h->lane, &h->largest_tag) || !host_warm_messages(h)) {
         err_set(e, ERR_INTERNAL, "%s gives no communicator", hosts->call->library);
         free(h);
         return NULL;

@@ -24,7 +24,8 @@
 struct host_comm;
 
 /* host_comm_create: rank `hosts->rank` of `hosts->size`, on a lane of its own; called by all
- * processes of the job together. hosts NULL: the only rank, without MPI. Owned by the caller. NULL
+ * processes of the job together. They exchange messages, so that MPI's memory for messages is there
+ * before any is measured. hosts NULL: the only rank, without MPI. Owned by the caller. NULL
  * with ERR_INTERNAL when MPI refuses. host_comm_destroy: by all together; accepts NULL. */
 struct host_comm *host_comm_create(const struct hosts *hosts, struct err *e);
 void host_comm_destroy(struct host_comm *h);
@@ -42,6 +43,7 @@ struct host_times {
     int64_t stage_ns[RUN_MAX_STAGES]; /* they add up to the time from begin to end */
     int64_t published_ns;             /* time that the clock stood: not in stages */
     int64_t preempted;                /* involuntary switches of this thread meanwhile */
+    int64_t faults;                   /* page faults of this thread meanwhile */
     int64_t late_ns;                  /* how late this rank began, where all begin at one time */
     int64_t messages, bytes;          /* sent */
 };
@@ -67,9 +69,12 @@ bool host_comm_one_clock(const struct host_comm *h);
 /* host_comm_barrier: MPI's own barrier, for measurements. False: MPI reports an error. */
 bool host_comm_barrier(struct host_comm *h);
 
-/* host_clock_ns: this host's monotonic clock [ns]. host_switches: involuntary switches of this
- * thread so far. */
+/* host_clock_ns: this host's monotonic clock [ns]. host_switches, host_faults: involuntary switches
+ * of this thread so far; its page faults. host_interruptions: both together, for what touches no
+ * memory of its own for the first time. */
 int64_t host_clock_ns(void);
 int64_t host_switches(void);
+int64_t host_faults(void);
+int64_t host_interruptions(void);
 
 #endif

@@ -43,7 +43,7 @@ struct host_comm {
     int stage, nstage;
     int64_t mark_ns; /* since when the time belongs to `stage` */
     int64_t paused_ns; /* since when the clock stands */
-    int64_t switches;
+    int64_t switches, faults; /* of this thread when the clock began */
     struct host_times times;
 
     struct host_list sent;    /* sends that nobody waits for */
@@ -91,6 +91,11 @@ int host_match_probe(struct comm *c, int src, int64_t tag, int64_t mask, int blo
                      struct comm_envelope *out, struct comm_request *take);
 void host_match_into(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
 int host_match_cancel(struct comm *c, struct comm_request *r);
+
+/* host_warm_messages: every process has exchanged messages with every other, so many at once and so
+ * large that MPI's memory for them is there; by all processes together. False: MPI reports an
+ * error. */
+bool host_warm_messages(struct host_comm *h);
 
 /* host_match_drain: throw away what nobody received; whether there was anything. */
 bool host_match_drain(struct host_comm *h);

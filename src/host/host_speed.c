@@ -149,9 +149,9 @@ static void samples_of(enum host_operation o, int n, double *time, int *clean)
     int bad = n;
     *clean = 0;
     for (int i = 0; i < n; i++) {
-        const int64_t switches = host_switches();
+        const int64_t before = host_interruptions();
         const double took = once(o);
-        if (host_switches() == switches) time[(*clean)++] = took;
+        if (host_interruptions() == before) time[(*clean)++] = took;
         else time[--bad] = took;
     }
 }

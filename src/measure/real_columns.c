@@ -81,7 +81,8 @@ static const struct column real_column[] = {
      .doc = "why it is not ok; else how fast the computer was [ns], JSON"},
     {"samples", COLUMN_INT, REAL(nsample), .doc = "repetitions"},
     {"disturbed", COLUMN_INT, REAL(disturbed),
-     .doc = "of them, those in which the host took a processor away: not in the statistics"},
+     .doc = "of them, those in which the host took a processor away, or page faults came that "
+            "others did without: not in the statistics"},
     {"min_s", COLUMN_REAL, REAL(time.min), .flags = COLUMN_NULL, .known = has_samples,
      .doc = "wall time from the first rank's begin to the last rank's end, least"},
     {"lower_s", COLUMN_REAL, REAL(time.lower), .flags = COLUMN_NULL, .known = has_samples,
@@ -133,6 +134,7 @@ const struct column_table real_stage_columns = COLUMNS(stage_column);
 static const struct column sample_column[] = {
     {"seconds", COLUMN_REAL, SAMPLE(seconds), .doc = "wall time of the repetition"},
     {"disturbed", COLUMN_BOOL, SAMPLE(disturbed),
-     .doc = "1: the host took a processor away meanwhile"},
+     .doc = "1: the host took a processor away meanwhile, or page faults came that "
+            "others did without"},
 };
 const struct column_table real_sample_columns = COLUMNS(sample_column);

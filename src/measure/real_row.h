@@ -2,7 +2,8 @@
  * answer, and what else the computer had to do.
  *
  * Times are seconds of the host's clock. A repetition is disturbed when the host took a processor
- * away from one of the ranks meanwhile, or a rank began late; statistics are over the others. */
+ * away from one of the ranks meanwhile, when a rank began late, or when the ranks met page faults
+ * that others of the repetitions did without; statistics are over the others. */
 #ifndef MEASURE_REAL_ROW_H
 #define MEASURE_REAL_ROW_H
 

@@ -11,6 +11,7 @@ enum {
     FACT_BEGIN,
     FACT_END,
     FACT_PREEMPTED,
+    FACT_FAULTS,
     FACT_LATE,
     FACT_DIGEST,
     FACT_MESSAGES,

@@ -16,6 +16,7 @@ static bool tell_facts(struct real *r, const struct host_times *t)
     int64_t mine[FACTS] = {[FACT_BEGIN] = t->begin_ns,
                            [FACT_END] = t->end_ns - t->published_ns,
                            [FACT_PREEMPTED] = t->preempted,
+                           [FACT_FAULTS] = t->faults,
                            [FACT_LATE] = t->late_ns,
                            [FACT_DIGEST] = (int64_t)host_comm_digest(r->comm),
                            [FACT_MESSAGES] = t->messages,

@@ -27,15 +27,18 @@ enum {
  *
  * One sample out of what all ranks told: from the common begin to the last end where they share a
  * clock, else the longest of them. */
-static struct real_sample sample_of(const struct real *r, double *mean, double *largest)
+static struct real_sample sample_of(const struct real *r, int64_t *faults, double *mean,
+                                    double *largest)
 {
     const bool one = host_comm_one_clock(r->comm);
     struct real_sample s = {0};
     int64_t begin = INT64_MAX, span = 0;
+    *faults = 0;
     for (int i = 0; i < r->nrank; i++) {
         const int64_t *f = real_facts(r, i);
         if (f[FACT_BEGIN] < begin) begin = f[FACT_BEGIN];
         s.disturbed = s.disturbed || f[FACT_PREEMPTED] > 0 || f[FACT_LATE] > LATE_NS;
+        *faults += f[FACT_FAULTS];
     }
     for (int i = 0; i < r->nrank; i++) {
         const int64_t *f = real_facts(r, i), took = f[FACT_END] - (one ? begin : f[FACT_BEGIN]);
@@ -60,6 +63,8 @@ static struct real_sample sample_of(const struct real *r, double *mean, double *
 /* What is wanted, and how far it is. */
 struct sampling {
     int wanted, most, clean; /* undisturbed repetitions; repetitions; undisturbed ones so far */
+    int64_t *faults;         /* (most) page faults of each that was not interrupted; -1: it was */
+    int64_t fewest;          /* of those */
     double limit;            /* [s] */
     int64_t begin_ns;        /* on the clock of the first process */
 };
@@ -70,17 +75,43 @@ static double elapsed(const struct real *r, const struct sampling *s)
     return (double)(real_facts(r, 0)[FACT_NOW] - s->begin_ns) * 1e-9;
 }
 
+/* A page that comes while the clock runs belongs to the program when it comes each time, as where a
+ * program gets memory; the pages of its first hundreds of messages come once. So repetitions with
+ * more page faults than that with the fewest are disturbed, but for the small differences of
+ * programs that have many. */
+static bool has_more_faults(const struct sampling *s, int i)
+{
+    return s->faults[i] > s->fewest + s->fewest / 8;
+}
+
+/* The last repetition is judged; a new fewest judges those before it once more. */
+static void count(struct real_result *out, struct sampling *s)
+{
+    const int last = out->nsample - 1;
+    int first = last;
+    if (s->faults[last] >= 0 && s->faults[last] < s->fewest) {
+        s->fewest = s->faults[last];
+        first = out->disturbed = s->clean = 0;
+    }
+    for (int i = first; i <= last; i++) {
+        out->sample[i].disturbed = s->faults[i] < 0 || has_more_faults(s, i);
+        out->disturbed += out->sample[i].disturbed;
+        s->clean += !out->sample[i].disturbed;
+    }
+}
+
 /* One more repetition as a row of the tables. */
 static bool one_more(struct real *r, struct sampling *s, struct err *e)
 {
     struct real_result *out = r->out;
     const size_t at = (size_t)out->nsample * ((size_t)r->nstage + 1);
     if (!real_repeat(r, false, e)) return false;
-    const struct real_sample made = sample_of(r, &r->stage[0][at], &r->stage[1][at]);
+    int64_t faults;
+    const struct real_sample made = sample_of(r, &faults, &r->stage[0][at], &r->stage[1][at]);
     real_note_digest(r, false);
+    s->faults[out->nsample] = made.disturbed ? -1 : faults;
     out->sample[out->nsample++] = made;
-    out->disturbed += made.disturbed;
-    s->clean += !made.disturbed;
+    count(out, s);
     return true;
 }
 
@@ -121,10 +152,12 @@ bool real_sample(struct real *r, const struct real_order *order, struct arena *a
     struct real_result *out = r->out;
     struct sampling s = {.wanted = order->samples > 0 ? order->samples : SAMPLES,
                          .limit = order->seconds > 0 ? order->seconds : 5,
+                         .fewest = INT64_MAX,
                          .begin_ns = real_facts(r, 0)[FACT_NOW]};
     s.most = s.wanted > MOST_SAMPLES / 8 ? MOST_SAMPLES : 8 * s.wanted;
     const size_t row = (size_t)r->nstage + 1;
     out->sample = TAKE(a, s.most, struct real_sample);
+    s.faults = TAKE(a, s.most, int64_t);
     for (int i = 0; i < 2; i++) r->stage[i] = TAKE(a, size_product((size_t)s.most, row), double);
     if (order->bursts == 0) return burst(r, &s, 0, 1, e);
     int bursts = s.wanted / LEAST_BURST;

@@ -159,6 +159,41 @@ on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
             = 10 * json_array_length(text, '\$.bursts') FROM real_run" '1|1|1'
 }
 
+# Without an exchange beforehand nearly every message of the first hundreds meets a page fault, on MPICH.
+first_messages() {
+    needs "$1"
+    cp "$MIMDSIM_BUILDDIR/tests/host/fresh_messages" .
+    ln -s "$(dirname "$MIMDSIM")/mimdsim-hosts-$1.so" .
+    works start "$1" 2 ./fresh_messages
+    [ "$output" -le 12 ] || { show; return 1; } # of 120 messages, in both processes
+}
+
+@test "the memory of messages is there before messages are measured, with Open MPI" { first_messages openmpi; }
+@test "the memory of messages is there before messages are measured, with MPICH" { first_messages mpich; }
+
+@test "repetitions with page faults that others did without are disturbed" {
+    needs mpich
+    command -v gcc >/dev/null || skip "no gcc"
+    # Half of the repetitions, by chance, touch 64 pages for the first time.
+    cat >touch.c <<'C'
+#include <mimdsim/program.h>
+#include <stdlib.h>
+static void run(struct comm *c)
+{
+    const double one = 1;
+    volatile char *fresh = malloc(40 << 20); /* always from the system */
+    if (comm_now_ps(c) / 1000 % 2)
+        for (long k = 0; k < 64; k++) fresh[k * 4096] = 1;
+    free((void *)fresh);
+    comm_publish(c, 0, 0, 1, &one);
+}
+PROGRAM(.title = "pages", .output = {"x"}, .run = run);
+C
+    works start mpich 1 "$MIMDSIM" run touch.c --set ranks=1 --backend mpi --samples 20 --limit 5 -o r.db -q
+    sql_is r.db "SELECT r.status, count(*) FILTER (WHERE s.disturbed) >= 5, min(s.seconds) FILTER (WHERE s.disturbed) > r.median_s
+        FROM real_run AS r JOIN real_sample AS s USING (real_id)" 'ok|1|1'
+}
+
 @test "predict tells which machine it is, and takes no shipped one unless it is named" {
     needs mpich
     planted
