@@ -115,14 +115,16 @@ static void print_results(const struct compare *c, FILE *out)
         fprintf(out, "\n");
     }
     if (c->ncommon > LONGEST_LIST)
-        fprintf(out, "and %d points more: --json has all\n", c->ncommon - LONGEST_LIST);
+        fprintf(out, "and %d point%s more: --json has all\n", c->ncommon - LONGEST_LIST,
+                c->ncommon - LONGEST_LIST == 1 ? "" : "s");
     fprintf(out,
             spread
                 ? "+-: half of the 95 %% confidence interval, from repetitions\n"
                 : "Single runs: simulated times have no spread; how far the model is off, `mimdsim "
                   "accuracy` and `validate` tell.\n");
     if (c->npoint > c->ncommon)
-        fprintf(out, "Left out: %d points that not all sides have.\n", c->npoint - c->ncommon);
+        fprintf(out, "Left out: %d point%s that not all sides have.\n", c->npoint - c->ncommon,
+                c->npoint - c->ncommon == 1 ? "" : "s");
 }
 
 /* At the largest common point, which is the last one. */

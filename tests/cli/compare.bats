@@ -33,6 +33,10 @@ load helper
     works mimdsim run speedup-t3e --set n=16 --set level=loggp -o d.db --quiet
     works mimdsim compare c.db d.db
     stdout_says 'B takes 1 times as long as A'
+    # one is not several
+    works mimdsim run speedup-t3e --set n=8,16 --set level=loggp -o e.db --quiet
+    works mimdsim compare d.db e.db
+    stdout_says 'Left out: 1 point that not all sides have.'
 }
 
 @test "the foot of the figure says how far the times of all sides are known, also of two databases" {
