@@ -174,7 +174,7 @@ void *arena_take(struct arena *a, size_t size)
     b->used += room;
     if (b->dirty < b->used) b->dirty = b->used;
     /* Peak of what is in use, not of what is mapped: it is compared with estimates. */
-    size_t in_use = b->before + b->used - ALIGN;
+    const size_t in_use = arena_used(a);
     if (in_use > a->peak) a->peak = in_use;
     return p;
 }
@@ -226,14 +226,40 @@ void arena_release(struct arena *a, struct arena_mark m)
 
 /* Written with what it holds: a page that was only read would be the one page of zeros. Between two
  * takes the address sanitizer forbids it to others. */
-__attribute__((no_sanitize_address)) void arena_touch(struct arena *a)
+__attribute__((no_sanitize_address)) static void block_touch(struct block *b, size_t bytes)
 {
-    for (struct block *b = a->top; b; b = b->below)
-        for (size_t i = 0; i < b->used; i += PAGE) {
-            volatile char *p = (char *)b + i;
-            const char held = *p;
-            *p = held;
-        }
+    for (size_t i = 0; i < bytes; i += PAGE) {
+        volatile char *p = (char *)b + i;
+        const char held = *p;
+        *p = held;
+    }
+}
+
+/* The next `more` bytes of a block: there, and zero, so that nothing is left to do for a take. The
+ * sanitizer lets them be used before that. */
+static void block_foresee(struct block *b, size_t more)
+{
+    const size_t room = b->capacity - b->used, old = b->dirty - b->used;
+    UNPOISON((char *)b + b->used, old);
+    memset((char *)b + b->used, 0, old);
+    b->dirty = b->used;
+    block_touch(b, b->used + (more < room ? more : room));
+}
+
+/* Takes fill the top block first; the rest of them, or all, find room in one more. */
+void arena_touch(struct arena *a, size_t more)
+{
+    for (struct block *b = a->top; b; b = b->below) block_touch(b, b->used);
+    if (more == 0) return;
+    if (a->top) block_foresee(a->top, more);
+    if (a->spare && a->spare->capacity - ALIGN < more) block_unmap(a->spare), a->spare = NULL;
+    if (!a->spare) a->spare = block_map(a, more);
+    block_foresee(a->spare, more);
+}
+
+size_t arena_used(const struct arena *a)
+{
+    return a->top ? a->top->before + a->top->used - ALIGN : 0;
 }
 
 size_t arena_peak(const struct arena *a)

@@ -40,10 +40,13 @@ struct arena_mark arena_mark(struct arena *a);
 void arena_release(struct arena *a, struct arena_mark m);
 
 /* arena_touch: every page of what has been taken is there from now on, as for a program that has
- * used its memory before; contents stay. */
-void arena_touch(struct arena *a);
+ * used its memory before; contents stay. So are the pages of the takes that follow, up to `more`
+ * bytes of them; where the arena is empty these takes lie one after the other in one block, which
+ * arena_empty keeps. */
+void arena_touch(struct arena *a, size_t more);
 
-/* arena_peak: largest number of bytes ever in use [B]. */
+/* arena_used: bytes in use [B]. arena_peak: largest number of bytes ever in use [B]. */
+size_t arena_used(const struct arena *a);
 size_t arena_peak(const struct arena *a);
 
 /* TAKE(a, n, type): an array of n zeroed elements of `type`. Where n is a product it is a

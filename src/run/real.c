@@ -127,9 +127,11 @@ bool run_real(const struct run_spec *spec, const struct hosts *hosts, struct hos
     if (spec->refused) return err_set(e, (enum err_kind)spec->refused_kind, "%s", spec->refused);
     if (!refuse(spec, processes, e)) return false;
     r.facts = memory_zeroed((size_t)processes * FACTS, sizeof *r.facts);
+    r.memory = arena_create();
     bool ok = real_simulate(&r, e);
     if (ok && out->status == RUN_OK) ok = measure(&r, order, a, e);
     real_forget(&r);
+    arena_destroy(r.memory);
     free(r.facts);
     return ok;
 }

@@ -41,6 +41,8 @@ struct real {
     struct kept_answer simulated[PROGRAM_OUTPUTS];
     int64_t *facts; /* (P x FACTS) of the last repetition */
     int nstage, nrank;
+    struct arena *memory; /* of the program, at the same addresses in each repetition */
+    size_t bytes;         /* of it that a repetition takes, 0: not known yet */
     char stage_name[RUN_MAX_STAGES][24];
     double *stage[2]; /* (repetitions x (nstage + 1)) mean and largest over ranks [s] */
     uint64_t first_digest;

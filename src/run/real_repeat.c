@@ -44,24 +44,28 @@ bool real_lost(struct real *r, struct err *e)
 bool real_repeat(struct real *r, bool judged, struct err *e)
 {
     static const struct run_order order = {.real = true};
-    struct arena *own = arena_create(), *scratch = arena_create();
+    struct arena *own = arena_create();
     struct program_run run = {.spec = r->own};
     struct host_times times;
     bool left = false;
-    /* Everything anew, as for a first run: images of people's programs, outputs, tables. */
+    /* Images of people's programs, outputs and tables are made anew, as for a first run. The memory
+     * of the program is that of the repetition before: a page that comes while the clock runs may
+     * cost more than all that is computed with it; while one rank gets memory, its clock stands,
+     * and those of others that wait for it do not; and MPI prepares large messages at the first use
+     * of an address. */
+    arena_empty(r->memory, SIZE_MAX);
+    arena_touch(r->memory, r->bytes);
     bool ok =
-        run_open(&r->own, &order, r->cache, own, &run, e) && run.type->prepare(&run, scratch, e);
+        run_open(&r->own, &order, r->cache, own, &run, e) && run.type->prepare(&run, r->memory, e);
     if (ok) {
         const struct rank_program *p = run.rank;
         const int rank = r->hosts != NULL ? r->hosts->rank : 0;
-        void *workspace = arena_take(scratch, run.rank->workspace_bytes(run.job, rank));
+        void *workspace = arena_take(r->memory, run.rank->workspace_bytes(run.job, rank));
         r->nstage = p->nstage;
         for (int i = 0; i < p->nstage; i++)
             text_copy(r->stage_name[i], sizeof r->stage_name[i], p->stage_name[i]);
-        /* A page that comes while the clock runs may cost more than all that is computed with it;
-         * what a program writes its answers to is memory as well. */
-        arena_touch(own);
-        arena_touch(scratch);
+        arena_touch(own, 0);
+        arena_touch(r->memory, 0);
         struct comm *c =
             host_comm_run_begin(r->comm, p->timed, p->nstage, run.output, PROGRAM_OUTPUTS);
         /* People's own programs mark their time themselves: their copy of the image is not part of
@@ -69,14 +73,14 @@ bool real_repeat(struct real *r, bool judged, struct err *e)
         if (!p->foreign) c->type->mark(c, 1);
         p->run(c, run.job, workspace);
         if (!p->foreign) c->type->mark(c, 0);
+        r->bytes = arena_peak(r->memory);
         ok = host_comm_run_end(r->comm, &times, &left) && tell_facts(r, &times);
         if (!ok) real_lost(r, e);
     }
     if (ok && judged) {
-        ok = real_judge(r, &run, own, scratch) || real_lost(r, e);
+        ok = real_judge(r, &run, own, r->memory) || real_lost(r, e);
     }
     run_close(&run);
-    arena_destroy(scratch);
     arena_destroy(own);
     return ok;
 }

@@ -177,12 +177,63 @@ static void memory_that_was_touched_is_written_without_page_faults(void **state)
     unsigned char *p[3];
     for (int i = 0; i < 3; i++) p[i] = arena_take(a, size);
     memset(p[1], 7, size / 2);
-    arena_touch(a);
+    arena_touch(a, 0);
     assert_true(all_are(p[0], size, 0) && all_are(p[1], size / 2, 7));
     const long before = faults();
     for (int i = 0; i < 3; i++) memset(p[i], i + 1, size);
     /* The sanitizer's own pages are few beside these 3,072, large pages or not. */
     assert_true(faults() - before < 8);
+    arena_destroy(a);
+}
+
+/* Whether the takes fill what is left of a block or need another one. */
+static void takes_that_were_foreseen_meet_no_page_faults(void **state)
+{
+    (void)state;
+    const size_t before_them[] = {0, 100, 60000, 200000, (size_t)3 << 20}, size = (size_t)1 << 20;
+    for (size_t k = 0; k < sizeof before_them / sizeof *before_them; k++) {
+        struct arena *a = arena_create();
+        arena_take(a, before_them[k]);
+        /* Three, which the sanitizer keeps apart, and one byte that takes a line. */
+        arena_touch(a, 3 * (size + 64) + 128);
+        const size_t used = arena_used(a);
+        const long before = faults();
+        for (int i = 0; i < 3; i++) {
+            unsigned char *p = arena_take(a, size);
+            assert_true(all_are(p, size, 0));
+            memset(p, i + 1, size);
+        }
+        *(char *)arena_take(a, 1) = 1;
+        assert_true(faults() - before < 8);
+        assert_true(arena_used(a) - used >= 3 * size + 1);
+        assert_true(arena_peak(a) == arena_used(a));
+        arena_destroy(a);
+    }
+}
+
+/* As the repetitions of a measurement take memory. */
+static void takes_that_are_repeated_lie_at_the_same_addresses_and_are_zero(void **state)
+{
+    (void)state;
+    const size_t size[] = {300, 70000, 5, (size_t)1 << 20, 64, 400000};
+    enum { TAKES = sizeof size / sizeof *size };
+    void *first[TAKES];
+    size_t bytes = 0;
+    struct arena *a = arena_create();
+    for (int round = 0; round < 4; round++) {
+        arena_empty(a, SIZE_MAX);
+        arena_touch(a, bytes);
+        const long before = faults();
+        for (int i = 0; i < TAKES; i++) {
+            unsigned char *p = arena_take(a, size[i]);
+            assert_true(all_are(p, size[i], 0));
+            memset(p, 0xff, size[i]);
+            if (round == 1) first[i] = p;
+            if (round > 1) assert_ptr_equal(p, first[i]);
+        }
+        if (round > 0) assert_true(faults() - before < 8);
+        bytes = arena_peak(a);
+    }
     arena_destroy(a);
 }
 
@@ -207,6 +258,8 @@ int main(void)
         cmocka_unit_test(the_peak_is_the_largest_use_not_the_last),
         cmocka_unit_test(untouched_memory_costs_no_memory_of_the_host),
         cmocka_unit_test(memory_that_was_touched_is_written_without_page_faults),
+        cmocka_unit_test(takes_that_were_foreseen_meet_no_page_faults),
+        cmocka_unit_test(takes_that_are_repeated_lie_at_the_same_addresses_and_are_zero),
         cmocka_unit_test(an_empty_take_is_a_place_and_null_is_destroyed_in_peace),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
