@@ -30,9 +30,8 @@ struct leg {
     struct leg *behind; /* the next in the FIFO behind the port, or in the pool */
     struct leg *ahead;  /* of the same worm at its next port, NULL: not known yet */
     struct worm *worm;
-    int32_t sent; /* flits that crossed the port */
-    int32_t port, channel;
-    sim_ps ask, first, tail; /* since when it wanted the port; its head and tail crossed it */
+    int32_t sent, port, channel; /* flits that crossed the port; over which it goes */
+    sim_ps ask, first, tail;     /* since when it wanted the port; its head and tail crossed it */
 };
 
 enum lane_state {
@@ -81,7 +80,7 @@ struct lane {
     struct route_option *option; /* (noption) of the front, none: to its node */
     int room;                    /* options that there is memory for, */
     int16_t channel;             /* of its port */
-    bool bars; /* one of its options has no channel, which spoils its turn at the switch */
+    bool bars, tried;            /* an option without a channel spoils its turn; see router.tried */
     struct route_option few[LANE_OPTIONS]; /* memory for the options of most */
     /* Of one allocation: */
     int pick_priority;
@@ -109,7 +108,8 @@ enum { ROUTER_POSTED = 3, ROUTER_LANE_AGAIN = NET_LANE_ARBITRATE + 1 /* a second
 
 struct router {
     struct lane *busy;
-    sim_ps wake;                  /* 1 + time of its next event, 0: none */
+    sim_ps wake, tried;           /* 1 + its next event, the last instant that lanes tried in; 0 */
+    sim_ps again;                 /* when those lanes come back */
     sim_ps posted[ROUTER_POSTED]; /* 1 + times of events that were posted and are to come, or 0 */
 };
 

@@ -31,6 +31,7 @@ static void ask_add(struct routers *g, struct lane *in, struct lane *out, int pr
         g->ask = more;
         g->ask_room = 2 * g->ask_room + 64;
     }
+    router_tries(g, in);
     out->match = out->wish = out->fresh = NULL;
     g->ask[g->nask++] = (struct ask){in, out, priority};
 }
@@ -119,6 +120,7 @@ static bool bid_add(struct routers *g, struct lane *v, struct port *out, bool sp
 {
     struct port *in = &g->port[v->port];
     const uint32_t n = (uint32_t)g->fabric.nchannel;
+    router_tries(g, v);
     for (int i = 0; i < g->nbid; i++) {
         struct bid *b = &g->bid[i];
         if (b->in != in || b->out != out) continue;
@@ -311,7 +313,7 @@ static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
             *again = router_sooner(*again, at);
             continue;
         }
-        g->active[n++] = v;
+        if (!v->tried) g->active[n++] = v;
     }
     return n;
 }
@@ -378,6 +380,7 @@ static sim_ps look_single(struct routers *g, struct lane *v, sim_ps now)
     if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
     const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
     if (at > now) return at;
+    if (v->tried) return SIM_NEVER;
     if (v->state != LANE_ASKING || g->single) return router_pass(g, v, now);
     g->active[0] = v;
     return allocate_together(g, 1, now);
@@ -430,6 +433,14 @@ static __attribute__((noinline)) sim_ps look_slowly(struct routers *g, int r, si
     return g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
 }
 
+/* Another instant: all may try again. */
+static void tries_forget(struct router *o)
+{
+    o->tried = 0;
+    o->again = SIM_NEVER;
+    for (struct lane *v = o->busy; v; v = v->busy) v->tried = false;
+}
+
 void router_look_at(struct routers *g, int r, sim_ps now)
 {
     struct router *o = &g->router[r];
@@ -438,7 +449,11 @@ void router_look_at(struct routers *g, int r, sim_ps now)
     o->wake = 0;
     g->now = now;
     if (!o->busy) return;
-    if (!g->quick || !look_quickly(g, o->busy, now, &again)) again = look_slowly(g, r, now);
+    if (o->tried && o->tried != now + 1) tries_forget(o);
+    if (o->tried || !g->quick || !look_quickly(g, o->busy, now, &again))
+        again = look_slowly(g, r, now);
+    /* Who tried before in this instant comes back as it said then. */
+    if (o->tried) o->again = again = router_sooner(again, o->again);
     if (again != SIM_NEVER) router_wake(g, r, again);
 }
 

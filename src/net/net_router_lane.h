@@ -84,6 +84,14 @@ static inline int32_t router_unit(const struct routers *g, const struct worm *w)
     return g->whole ? w->flits : 1;
 }
 
+/* router_tries: v takes part in an allocation of this instant, and so in no other one: who gets
+ * nothing comes back a flit later, whether the router is looked at again at once or not. */
+static inline void router_tries(const struct routers *g, struct lane *v)
+{
+    v->tried = true;
+    g->router[v->of->to].tried = g->now + 1;
+}
+
 /* router_out: the port that option o of lane v's front leads over; o NULL: out of the network. */
 static inline int router_out(const struct routers *g, const struct lane *v,
                              const struct route_option *o)

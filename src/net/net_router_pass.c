@@ -377,6 +377,7 @@ static inline sim_ps head_alone(struct routers *g, struct lane *v, sim_ps now, c
         router_crosses(in, p);
         in->turn = router_next_channel(g, v);
     }
+    if (bids || c.channel) router_tries(g, v);
     if (!c.channel) return bids ? router_sooner(again, ps_later(now, p->flit)) : again;
     /* So does the one offer that it accepts, as in a first round. */
     router_channel_given(v, c.channel);
@@ -392,8 +393,8 @@ static inline sim_ps head_alone(struct routers *g, struct lane *v, sim_ps now, c
 /* The outputs for which v's head bids: of its eligible options those of the highest priority, or
  * all of them (routers.strict). Returns the one whose turn it is, NULL: none; *again: when to come
  * back for others, or because two bids were for one output. */
-static struct port *find_output(struct routers *g, const struct lane *v, const bool *may,
-                                sim_ps now, sim_ps *again)
+static struct port *find_output(struct routers *g, struct lane *v, const bool *may, sim_ps now,
+                                sim_ps *again)
 {
     struct port *in = v->of, *bid[ROUTING_MOST_OPTIONS], *best = NULL;
     int nbid = 0, top = -1;
@@ -411,6 +412,7 @@ static struct port *find_output(struct routers *g, const struct lane *v, const b
             *again = router_sooner(*again, at);
             continue;
         }
+        router_tries(g, v);
         bid[nbid++] = p;
         if (!best || router_after(p->out, in->accept) < router_after(best->out, in->accept))
             best = p;
@@ -439,6 +441,7 @@ static sim_ps head_choosing(struct routers *g, struct lane *v, sim_ps now)
         may[i] = c.bids;
         bars = bars || (g->strict && !c.bids);
         if (!c.channel) continue;
+        router_tries(g, v);
         back = router_sooner(back, ps_later(now, g->port[at].flit));
         if (best.channel &&
             (level < priority || (level == priority && c.distance >= best.distance)))

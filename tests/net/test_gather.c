@@ -159,7 +159,7 @@ static void same(const struct traffic_result *x, const struct traffic_result *y,
 
 /* All times, in one number: what both ways of playing have in common, as how a lane moves on that
  * is alone at its router, cannot be seen by comparing them. */
-static const uint64_t TIMES = 0x7aaa5f0991afb8f0;
+static const uint64_t TIMES = 0x066743d59df55824;
 
 static uint64_t times_mix(uint64_t digest, const struct traffic_result *x, int n)
 {
@@ -255,11 +255,32 @@ static void a_head_that_did_not_ask_has_no_second_look(void **state)
     for (int trial = 25; trial < 165; trial++) lists_agree(&m, 6, trial);
 }
 
+/* Who asked or bid and lost comes back a flit later, also where another lane has the router looked
+ * at a second time in the same instant. These lists showed the difference. */
+static void who_lost_does_not_try_again_in_the_same_instant(void **state)
+{
+    (void)state;
+    static const int trial[] = {383, 518, 686};
+    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
+                                    .ndim = 2,
+                                    .dims = {2, 2},
+                                    .nodes_per_router = 1,
+                                    .processors_per_node = 1,
+                                    .tie = TIE_RANDOM};
+    struct machine_spec m = netcheck_machine(&s, 4, 8, 0, 3);
+    m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
+    m.network.level = LEVEL_PACKET;
+    m.network.vc_allocator = ALLOCATOR_ISLIP;
+    m.network.allocator_iterations = 3;
+    for (int i = 0; i < 3; i++) lists_agree(&m, 4, trial[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_are_found_without_a_look_by_chance),
         cmocka_unit_test(a_head_that_did_not_ask_has_no_second_look),
+        cmocka_unit_test(who_lost_does_not_try_again_in_the_same_instant),
         cmocka_unit_test(gathered_and_single_events_give_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
