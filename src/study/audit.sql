@@ -1,15 +1,29 @@
 -- audit.sql - the rules of `mimdsim check DB` (audit.h). Each query gives the rows that contradict others: the id of the run
--- or NULL, and what is wrong, as text. A rule begins with its name; the file is compiled in by audit_sql.sed.
+-- or NULL, and what is wrong, as text; or in a third column a query that gives such rows. A
+-- rule begins with its name; the file is compiled in by audit_sql.sed.
 
 -- rule: integrity
 SELECT NULL, integrity_check
 FROM pragma_integrity_check(20)
 WHERE integrity_check <> 'ok';
 
+-- Rows of tables without row numbers are told by their primary key, which the pragma does not give: the third column is a
+-- query that does.
 -- rule: foreign keys
-SELECT NULL, 'table ' || "table" || ', row ' || coalesce(rowid, '?') ||
-    ' belongs to no row of table ' || parent
-FROM pragma_foreign_key_check;
+SELECT NULL, 'table ' || "table" || ', row ' || rowid ||
+    ' belongs to no row of table ' || parent, NULL
+FROM pragma_foreign_key_check
+WHERE rowid IS NOT NULL
+UNION ALL
+SELECT NULL, NULL, format('SELECT NULL, ''table %w, row '' || %s || '' belongs to no row of table %w''
+    FROM "%w" AS c WHERE %s AND NOT EXISTS (SELECT 1 FROM "%w" AS p WHERE %s)',
+    k."table", (SELECT group_concat(format('''%w '' || quote(c."%w")', name, name), ' || '', '' || ')
+        FROM (SELECT name FROM pragma_table_info(k."table") WHERE pk > 0 ORDER BY pk)),
+    parent, k."table", (SELECT group_concat(format('c."%w" IS NOT NULL', "from"), ' AND ')
+        FROM pragma_foreign_key_list(k."table") WHERE id = fkid),
+    parent, (SELECT group_concat(format('p."%w" = c."%w"', "to", "from"), ' AND ')
+        FROM pragma_foreign_key_list(k."table") WHERE id = fkid))
+FROM (SELECT DISTINCT "table", parent, fkid FROM pragma_foreign_key_check WHERE rowid IS NULL) AS k;
 
 -- What a column of table run repeats of the configuration. Older configurations have
 -- the question in place of the level that a tolerance chose.

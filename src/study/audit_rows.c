@@ -7,17 +7,22 @@
 
 /* What a query of a rule needs to report its rows. */
 struct asking {
+    struct store *store;
     struct audit_report *report;
     const char *rule;
+    struct err *e;
 };
 
 /* A rule gives (run, text): one row is one contradiction. A text of NULL comes from a missing
- * number in the expression that makes it, which is a contradiction as well. */
+ * number in the expression that makes it, which is a contradiction as well. A third column that is
+ * not NULL is a query that gives such rows. */
 static bool take_finding(void *context, int ncolumn, const char *const *name,
                          const struct store_value *value)
 {
-    (void)ncolumn, (void)name;
-    const struct asking *q = context;
+    (void)name;
+    struct asking *q = context;
+    if (ncolumn > 2 && value[2].kind == STORE_TEXT)
+        return store_query(q->store, value[2].text, 0, NULL, NULL, take_finding, q, q->e);
     audit_find(q->report, value[0].kind == STORE_INT ? value[0].integer : 0, q->rule, "%s",
                value[1].kind == STORE_TEXT ? value[1].text : "a number is missing");
     return true;
@@ -87,8 +92,8 @@ bool audit_rows(struct store *s, struct audit_report *r, struct err *e)
         struct text rule = {0}, query = {0};
         text_add_bytes(&rule, name, (size_t)(sql - name));
         text_add_bytes(&query, sql, next ? (size_t)(next - sql) : strlen(sql));
-        struct asking q = {r, rule.s};
-        ok = store_query(s, query.s, 0, NULL, NULL, take_finding, &q, e);
+        struct asking q = {s, r, rule.s, e};
+        ok = store_query(s, query.s, 0, NULL, NULL, take_finding, &q, e) && e->kind == ERR_NONE;
         r->nrule++;
         text_free(&rule);
         text_free(&query);

@@ -64,6 +64,17 @@ DELETE FROM run_setting WHERE run_id = 2 AND setting_id IN (SELECT id FROM setti
 END
 }
 
+@test "a row that belongs to nothing is told by its number, or by its primary key where it has none" {
+    make_database
+    changed "UPDATE stage SET run_id = 77 WHERE run_id = 2 AND stage = 3"
+    fails_with 1 mimdsim check a.db
+    stderr_says "table stage, row run_id 77, stage 3 belongs to no row of table run"
+    [[ $stderr != *'row ?'* ]] || { show; return 1; }
+    changed "UPDATE link_loads SET run_id = 77 WHERE run_id = 2"
+    fails_with 1 mimdsim check a.db
+    stderr_says "table link_loads, row 77 belongs to no row of table run"
+}
+
 @test "what repeats nothing is found by making the run again" {
     make_database
     for change in "digest = '0000000000000000'" "events = events + 1" "residual = residual * 1.0000001"; do
