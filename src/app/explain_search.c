@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/gsl_errors.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/random.h"
@@ -371,7 +372,7 @@ static bool simplex(struct round *r, int start)
     struct descent d = begin_at(r, start);
     const struct explain_space *space = &r->search->goal.subject->space;
     if (d.n == 0) return true; /* no axis changes anything */
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    gsl_error_handler_t *handler = gsl_set_error_handler(gsl_errors_returned);
     gsl_multimin_fminimizer *m =
         gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, (size_t)d.n);
     gsl_vector *x = gsl_vector_alloc((size_t)d.n), *step = gsl_vector_alloc((size_t)d.n);

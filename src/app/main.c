@@ -5,12 +5,14 @@
 #include "config.h"
 
 #include <argp.h>
+#include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/verb.h"
 #include "base/escape.h"
+#include "base/gsl_errors.h"
 #include "base/text.h"
 #include "run/catalogue.h"
 #include "store/build.h"
@@ -111,6 +113,8 @@ int main(int argc, char **argv)
     escape_terminal();
     /* A limit on the size of files is an error of a write, told as such, and not the end. */
     signal(SIGXFSZ, SIG_IGN);
+    /* What calls GSL looks at its status. */
+    gsl_set_error_handler(gsl_errors_returned);
     /* argp's own errors end with the status for wrong usage. */
     argp_err_exit_status = err_exit_status(ERR_USAGE);
     const struct verb *named = argc > 0 ? verb_of_name(argv[0]) : NULL;

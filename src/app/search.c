@@ -13,6 +13,7 @@
 
 #include "app/outcome.h"
 #include "base/design.h"
+#include "base/gsl_errors.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -158,7 +159,7 @@ static bool descend(struct search *x, const double *start)
 {
     const size_t k = (size_t)x->asked->nrange;
     /* a simplex that cannot improve ends by a status, not by a message */
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    gsl_error_handler_t *handler = gsl_set_error_handler(gsl_errors_returned);
     gsl_multimin_fminimizer *m =
         gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, k);
     gsl_vector *at = gsl_vector_alloc(k), *step = gsl_vector_alloc(k);

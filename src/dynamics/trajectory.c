@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/gsl_errors.h"
 #include "base/text.h"
 #include "dynamics/differences.h"
 
@@ -74,7 +75,7 @@ static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
 {
     /* GSL's driver chooses its steps by its own estimate of the error. */
     double t = 0;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    gsl_error_handler_t *handler = gsl_set_error_handler(gsl_errors_returned);
     int status = gsl_odeiv2_driver_apply(driver, &t, duration, y);
     gsl_set_error_handler(handler);
     return status == GSL_SUCCESS ? (long)driver->e->count : -1;
@@ -87,7 +88,7 @@ static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, 
 {
     const double h = duration / (double)steps;
     int status = GSL_SUCCESS;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    gsl_error_handler_t *handler = gsl_set_error_handler(gsl_errors_returned);
     for (long k = 0; k < steps && status == GSL_SUCCESS; k++)
         status =
             gsl_odeiv2_step_apply(driver->s, (double)k * h, h, y, error, NULL, NULL, driver->sys);
@@ -120,7 +121,7 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     double first = options->first_step > 0 ? options->first_step : duration / 1000;
     gsl_odeiv2_system system = {derivative, jacobian, n, &f};
     /* The first step is a guess; the driver finds its own. */
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    gsl_error_handler_t *handler = gsl_set_error_handler(gsl_errors_returned);
     gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(
         &system, stepper_of(which), first, options->tolerance, options->tolerance);
     gsl_set_error_handler(handler);

@@ -60,7 +60,7 @@ static void solve(const double *count, const double *y, int n, int k, const bool
         for (int j = 0; j < m; j++)
             gsl_matrix_set(a, (size_t)i, (size_t)j, count[i * k + place[j]] / y[i] / scale[j]);
     }
-    gsl_multifit_linear(a, one, c, covariance, &chi, w);
+    CHECK(gsl_multifit_linear(a, one, c, covariance, &chi, w) == GSL_SUCCESS);
     for (int j = 0; j < m; j++) x[place[j]] = gsl_vector_get(c, (size_t)j) / scale[j];
     gsl_multifit_linear_free(w);
     gsl_vector_free(c);

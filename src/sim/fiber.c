@@ -142,8 +142,8 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     if (base == MAP_FAILED) {
         err_set(
             e, ERR_INTERNAL,
-            "cannot reserve %zu MiB of address space for the stacks of %d virtual processors: %s",
-            stride * (size_t)n >> 20, n, strerror(errno));
+            "cannot reserve %zu bytes of address space for the stacks of %d virtual processors: %s",
+            stride * (size_t)n, n, strerror(errno));
         return NULL;
     }
     sanitizer_fresh(base, stride * (size_t)n);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/check.h"
 #include "base/text.h"
 #include "kernel/dynamics_program.h"
 #include "kernel/programs.h"
@@ -92,7 +93,7 @@ static void answer(struct trial *t, const struct program_run *r, const struct ru
 }
 
 /* From the scene to the answer. Every failure on the way is a trial that did not answer, with
- * its text; nothing is left to the caller to free. */
+ * its text; nothing is left to the caller to free. Memory alone ends the process, as everywhere. */
 struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s,
                        struct arena *a)
 {
@@ -105,6 +106,8 @@ struct trial trial_run(const struct run_spec *spec, const struct model *m, const
     const bool good = trial_open(r, spec, m, s, a, &e) && r->type->prepare(r, a, &e) &&
                       launch_run(r, &spec->machine, &spec->record, run_spec_seed(spec),
                       launch_largest_message(r), NULL, a, NULL, a, result, &e);
+    /* What the system refuses says nothing of the method: nothing is concluded from it. */
+    if (!good && e.kind == ERR_INTERNAL) check_memory(0);
     if (good) answer(&t, r, result);
     else text_copy(t.text, sizeof t.text, e.text);
     run_close(r);

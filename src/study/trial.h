@@ -30,7 +30,8 @@ struct trial {
 };
 
 /* trial_run: run spec->kernel on spec->machine with spec->nrank processors for model m (NULL:
- * kernels without a model) in state s. Memory from a. */
+ * kernels without a model) in state s. Memory from a; where the system refuses memory the process
+ * ends (check_memory). */
 struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s,
                        struct arena *a);
 

@@ -15,4 +15,8 @@ if [ "$alone" != "$beside" ]; then
     # without the right to mount there are none
     case $beside in *'not in branches'*) ;; *) exit 1 ;; esac
 fi
-every --most "${MOST:-5}"
+every --most "${MOST:-5}" run more campaign query plot report verify merge || exit 1
+# These take longer: a full disk, and memory that their libraries do not get.
+every --most 2 --kind write load stability accuracy || exit 1
+every --most 3 --kind malloc stability accuracy || exit 1
+every --most 4 --kind map stability
