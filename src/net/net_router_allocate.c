@@ -437,7 +437,6 @@ static __attribute__((noinline)) sim_ps look_slowly(struct routers *g, int r, si
 static void tries_forget(struct router *o)
 {
     o->tried = 0;
-    o->again = SIM_NEVER;
     for (struct lane *v = o->busy; v; v = v->busy) v->tried = false;
 }
 

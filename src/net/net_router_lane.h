@@ -88,8 +88,10 @@ static inline int32_t router_unit(const struct routers *g, const struct worm *w)
  * nothing comes back a flit later, whether the router is looked at again at once or not. */
 static inline void router_tries(const struct routers *g, struct lane *v)
 {
+    struct router *o = &g->router[v->of->to];
     v->tried = true;
-    g->router[v->of->to].tried = g->now + 1;
+    if (!o->tried) o->again = SIM_NEVER;
+    o->tried = g->now + 1;
 }
 
 /* router_out: the port that option o of lane v's front leads over; o NULL: out of the network. */

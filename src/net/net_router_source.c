@@ -197,7 +197,6 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     g->fabric.occupied = router_occupied;
     g->port = TAKE(n->arena, n->nresource, struct port);
     g->router = TAKE(n->arena, n->topology->nrouter, struct router);
-    for (int r = 0; r < n->topology->nrouter; r++) g->router[r].again = SIM_NEVER;
     g->sending = TAKE(n->arena, n->nnode, struct leg *);
     g->waiting = TAKE(n->arena, n->nnode, struct worm *);
     ports_make(g);
