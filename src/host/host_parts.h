@@ -46,6 +46,8 @@ struct host_comm {
     int64_t switches, faults; /* of this thread when the clock began */
     struct host_times times;
 
+    char *warm; /* data of messages that are sent before the clock runs */
+
     struct host_list sent;    /* sends that nobody waits for */
     struct host_list posted;  /* timed: receives without a message */
     struct host_list arrived; /* timed: messages without a receive */
@@ -96,6 +98,11 @@ int host_match_cancel(struct comm *c, struct comm_request *r);
  * large that MPI's memory for them is there; by all processes together. False: MPI reports an
  * error. */
 bool host_warm_messages(struct host_comm *h);
+
+/* host_warm_caches: every process has just exchanged two messages of 64 KiB with its neighbours, by
+ * all together, after host_warm_messages. The first large message after other work takes 40 us
+ * more than the next ones. False: MPI reports an error. */
+bool host_warm_caches(struct host_comm *h);
 
 /* host_match_drain: throw away what nobody received; whether there was anything. */
 bool host_match_drain(struct host_comm *h);

@@ -22,35 +22,48 @@ struct exchange {
     struct hosts_request send[UNDER_WAY];
 };
 
-/* Sends begin first: as many cells as there are messages are taken before one is given back. */
-static bool exchange(struct exchange *x, size_t bytes)
+/* `n` messages each way. Sends begin first: as many cells as there are messages are taken before
+ * one is given back. */
+static bool exchange(struct exchange *x, int n, size_t bytes)
 {
     const struct lane_calls *call = x->h->hosts->call->lane;
     struct lane *lane = &x->h->lane;
     struct hosts_request r;
     bool ok = true;
-    for (int i = 0; ok && i < UNDER_WAY; i++)
+    for (int i = 0; ok && i < n; i++)
         ok = call->send_begin(lane, x->to, TAG, x->out, bytes, false, &x->send[i]);
-    for (int i = 0; ok && i < UNDER_WAY; i++)
+    for (int i = 0; ok && i < n; i++)
         ok = call->receive_begin(lane, x->from, TAG, x->in, bytes, &r) && call->wait(&r, NULL);
-    for (int i = 0; ok && i < UNDER_WAY; i++) ok = call->wait(&x->send[i], NULL);
+    for (int i = 0; ok && i < n; i++) ok = call->wait(&x->send[i], NULL);
     return ok;
+}
+
+/* Where processes lie `distance` apart in a ring. */
+static void pair_up(struct exchange *x, int distance)
+{
+    const int size = x->h->comm.size, rank = x->h->comm.rank;
+    x->to = (rank + distance) % size;
+    x->from = (rank + size - distance) % size;
 }
 
 bool host_warm_messages(struct host_comm *h)
 {
-    const int size = h->comm.size;
-    struct exchange x = {
-        .h = h, .out = memory_zeroed(1, (size_t)MOST), .in = memory_zeroed(1, (size_t)MOST)};
+    h->warm = memory_zeroed(2, (size_t)MOST);
+    struct exchange x = {.h = h, .out = h->warm, .in = h->warm + MOST};
     bool ok = true;
     /* Every pair, in both directions: each process has pages of its own of all cells. */
-    for (int distance = 1; ok && distance < size; distance++) {
-        x.to = (h->comm.rank + distance) % size;
-        x.from = (h->comm.rank + size - distance) % size;
+    for (int distance = 1; ok && distance < h->comm.size; distance++) {
+        pair_up(&x, distance);
         for (size_t bytes = LEAST; ok && bytes <= MOST; bytes *= 2)
-            for (int k = 0; ok && k < ROUNDS; k++) ok = exchange(&x, bytes - HEADER);
+            for (int k = 0; ok && k < ROUNDS; k++) ok = exchange(&x, UNDER_WAY, bytes - HEADER);
     }
-    free(x.out);
-    free(x.in);
     return ok;
+}
+
+/* From what was done between two repetitions the code of MPI and of the system is in no cache. */
+bool host_warm_caches(struct host_comm *h)
+{
+    struct exchange x = {.h = h, .out = h->warm, .in = h->warm + MOST};
+    pair_up(&x, 1);
+    return exchange(&x, 1, MOST) && exchange(&x, 1, MOST);
 }
