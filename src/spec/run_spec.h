@@ -84,6 +84,7 @@ struct run_order {
     /* of such a run: sums over the ranks will do, single ranks' times are not wanted; each process
      * makes the whole scene */
     bool sums, whole;
+    bool times; /* the simulated times alone are wanted: no check of the answer, no serial codes */
 };
 
 struct run_spec {
