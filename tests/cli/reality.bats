@@ -174,7 +174,7 @@ first_messages() {
 @test "repetitions with page faults that others did without are disturbed" {
     needs mpich
     command -v gcc >/dev/null || skip "no gcc"
-    # Half of the repetitions, by chance, touch 64 pages for the first time.
+    # Half of the repetitions, by chance, touch 1,024 pages for the first time; the sanitizer has some of its own in each.
     cat >touch.c <<'C'
 #include <mimdsim/program.h>
 #include <stdlib.h>
@@ -183,15 +183,15 @@ static void run(struct comm *c)
     const double one = 1;
     volatile char *fresh = malloc(40 << 20); /* always from the system */
     if (comm_now_ps(c) / 1000 % 2)
-        for (long k = 0; k < 64; k++) fresh[k * 4096] = 1;
+        for (long k = 0; k < 1024; k++) fresh[k * 4096] = 1;
     free((void *)fresh);
     comm_publish(c, 0, 0, 1, &one);
 }
 PROGRAM(.title = "pages", .output = {"x"}, .run = run);
 C
-    works start mpich 1 "$MIMDSIM" run touch.c --set ranks=1 --backend mpi --samples 20 --limit 5 -o r.db -q
-    sql_is r.db "SELECT r.status, count(*) FILTER (WHERE s.disturbed) >= 5, min(s.seconds) FILTER (WHERE s.disturbed) > r.median_s
-        FROM real_run AS r JOIN real_sample AS s USING (real_id)" 'ok|1|1'
+    works start mpich 1 "$MIMDSIM" run touch.c --set ranks=1 --backend mpi --samples 20 --limit 20 -o r.db -q
+    # Where nothing else runs there would be none or two.
+    sql_is r.db "SELECT status, disturbed >= 5, samples > disturbed FROM real_run" 'ok|1|1'
 }
 
 @test "predict tells which machine it is, and takes no shipped one unless it is named" {
