@@ -94,8 +94,9 @@ int host_match_probe(struct comm *c, int src, int64_t tag, int64_t mask, int blo
 void host_match_into(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
 int host_match_cancel(struct comm *c, struct comm_request *r);
 
-/* host_warm_messages: every process has exchanged messages with every other, so many at once and so
- * large that MPI's memory for them is there; by all processes together. False: MPI reports an
+/* host_warm_messages: every process has exchanged messages with every other (of more than 16: with
+ * those at distances of powers of two), so many at once and so large that MPI's memory for them is
+ * there; by all processes together. False: MPI reports an
  * error. */
 bool host_warm_messages(struct host_comm *h);
 

@@ -11,8 +11,9 @@
 
 /* UNDER_WAY: messages at once, as many as MPICH has cells; ROUNDS: those that wait for a cell use
  * the ones left over. LEAST, MOST: sizes, doubled, since what is too large for a cell is handed
- * over in another way, and how large a cell is nobody tells. HEADER: of a message, in its cell. */
-enum { UNDER_WAY = 64, ROUNDS = 2, LEAST = 4096, MOST = 65536, HEADER = 192, TAG = 1 };
+ * over in another way, and how large a cell is nobody tells. HEADER: of a message, in its cell.
+ * FEW: processes of which all pairs are prepared. */
+enum { FEW = 16, UNDER_WAY = 64, ROUNDS = 2, LEAST = 4096, MOST = 65536, HEADER = 192, TAG = 1 };
 
 /* What one exchange needs. */
 struct exchange {
@@ -46,13 +47,21 @@ static void pair_up(struct exchange *x, int distance)
     x->from = (rank + size - distance) % size;
 }
 
+/* All pairs of few processes; of many, those of rings and of recursive doubling, both ways. */
+static bool is_usual(int distance, int size)
+{
+    const int back = size - distance;
+    return size <= FEW || (distance & (distance - 1)) == 0 || (back & (back - 1)) == 0;
+}
+
 bool host_warm_messages(struct host_comm *h)
 {
     h->warm = memory_zeroed(2, (size_t)MOST);
     struct exchange x = {.h = h, .out = h->warm, .in = h->warm + MOST};
     bool ok = true;
-    /* Every pair, in both directions: each process has pages of its own of all cells. */
+    /* Each process has pages of its own of all cells. */
     for (int distance = 1; ok && distance < h->comm.size; distance++) {
+        if (!is_usual(distance, h->comm.size)) continue;
         pair_up(&x, distance);
         for (size_t bytes = LEAST; ok && bytes <= MOST; bytes *= 2)
             for (int k = 0; ok && k < ROUNDS; k++) ok = exchange(&x, UNDER_WAY, bytes - HEADER);

@@ -162,6 +162,7 @@ on_mine() { works mimdsim predict "${scenario[@]}" -m ./mine.yaml "$@"; }
 # Without an exchange beforehand nearly every message of the first hundreds meets a page fault, on MPICH.
 first_messages() {
     needs "$1"
+    [ "$(getconf _NPROCESSORS_ONLN)" -ge 2 ] || skip "one processor"
     cp "$MIMDSIM_BUILDDIR/tests/host/fresh_messages" .
     ln -s "$(dirname "$MIMDSIM")/mimdsim-hosts-$1.so" .
     works start "$1" 2 ./fresh_messages
