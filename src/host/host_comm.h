@@ -25,8 +25,9 @@ struct host_comm;
 
 /* host_comm_create: rank `hosts->rank` of `hosts->size`, on a lane of its own; called by all
  * processes of the job together. They exchange messages, so that MPI's memory for messages is there
- * before any is measured. hosts NULL: the only rank, without MPI. Owned by the caller. NULL
- * with ERR_INTERNAL when MPI refuses. host_comm_destroy: by all together; accepts NULL. */
+ * before any is measured, unless a computer has more of them than processors. hosts NULL: the only
+ * rank, without MPI. Owned by the caller. NULL with ERR_INTERNAL when MPI refuses.
+ * host_comm_destroy: by all together; accepts NULL. */
 struct host_comm *host_comm_create(const struct hosts *hosts, struct err *e);
 void host_comm_destroy(struct host_comm *h);
 

@@ -122,8 +122,6 @@ static bool simulated_time(void *context, int i, const double *price, double *se
 {
     const struct simulated *x = context;
     struct run_spec spec = x->plan->run[i];
-    struct arena *a = arena_create();
-    struct run_result *r = TAKE(a, 1, struct run_result);
     spec.machine.node = *x->node;
     /* A price of nothing at all would switch finer rules off, or ask for node.div. */
     spec.machine.node.code = (struct code_spec){.issue = fmax(price[0], 1e-6),
@@ -139,14 +137,7 @@ static bool simulated_time(void *context, int i, const double *price, double *se
                                                 .add_latency = fmax(price[10], 1e-6),
                                                 .multiply_latency = fmax(price[11], 1e-6),
                                                 .window = code_price_window(price)};
-    /* Some hundred runs of each loop: what it computes was checked when it was measured. */
-    static const struct run_order order = {.times = true};
-    const bool ok = run_sharing(&spec, &order, x->cache, a, r, e) &&
-                    (r->status == RUN_OK ||
-                     err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", r->text));
-    *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
-    arena_destroy(a);
-    return ok;
+    return predict_time(&spec, x->cache, seconds, e);
 }
 
 /* "calibrate-code, loop = sum": settings that the points differ in. */

@@ -106,12 +106,32 @@ void price_scale(struct machine_spec *m, enum price_group g, double factor)
     scale_software(&m->software, g, factor);
 }
 
+static bool simulate(const struct run_spec *spec, const struct run_order *order,
+                     struct run_cache *cache, struct arena *a, struct run_result *out,
+                     struct err *e)
+{
+    if (!run_sharing(spec, order, cache, a, out, e)) return false;
+    if (out->status == RUN_OK) return true;
+    return err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", out->text);
+}
+
 bool predict_simulate(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
                       struct run_result *out, struct err *e)
 {
-    if (!run_sharing(spec, NULL, cache, a, out, e)) return false;
-    if (out->status == RUN_OK) return true;
-    return err_set(e, ERR_CHECK, "the simulated run is not ok: %.600s", out->text);
+    return simulate(spec, NULL, cache, a, out, e);
+}
+
+/* For runs by the hundred, with other prices: what they compute is the same. */
+bool predict_time(const struct run_spec *spec, struct run_cache *cache, double *seconds,
+                  struct err *e)
+{
+    static const struct run_order order = {.times = true};
+    struct arena *a = arena_create();
+    struct run_result *r = TAKE(a, 1, struct run_result);
+    const bool ok = simulate(spec, &order, cache, a, r, e);
+    *seconds = ok ? (double)r->makespan_ps * 1e-12 : 0;
+    arena_destroy(a);
+    return ok;
 }
 
 /* Mean over the ranks, as real stages are. The simulator's last stage is idling, too. */
@@ -168,12 +188,10 @@ static bool contribution(const struct run_spec *spec, enum price_group g, struct
                          double before, double *out, struct err *e)
 {
     struct run_spec changed = *spec;
-    struct arena *a = arena_create();
-    struct run_result *r = TAKE(a, 1, struct run_result);
+    double seconds;
     price_scale(&changed.machine, g, 1 + STEP);
-    const bool ok = predict_simulate(&changed, cache, a, r, e);
-    *out = ok ? ((double)r->makespan_ps * 1e-12 - before) / STEP : 0;
-    arena_destroy(a);
+    const bool ok = predict_time(&changed, cache, &seconds, e);
+    *out = ok ? (seconds - before) / STEP : 0;
     return ok;
 }
 

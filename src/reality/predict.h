@@ -45,9 +45,13 @@ struct prediction {
     double factor;               /* by which its times would have to change */
 };
 
-/* predict_simulate: run_sharing, and ERR_CHECK when the simulated run is not RUN_OK. */
+/* predict_simulate: run_sharing, and ERR_CHECK when the simulated run is not RUN_OK. predict_time:
+ * its simulated time alone [s], without a check of the answer and without serial codes; false as
+ * predict_simulate. */
 bool predict_simulate(const struct run_spec *spec, struct run_cache *cache, struct arena *a,
                       struct run_result *out, struct err *e);
+bool predict_time(const struct run_spec *spec, struct run_cache *cache, double *seconds,
+                  struct err *e);
 
 /* predict_run: simulate `spec` on its machine, and once more for each group of prices.
  *
