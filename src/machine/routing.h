@@ -57,9 +57,11 @@ struct routing {
     bool fixed;   /* through an empty network the way depends on its ends alone */
     bool by_load; /* routes depend on `used` */
     bool at_source; /* by_load only at the first router */
-    bool fits;   /* above the escape a channel may be given only to a packet that it can hold whole:
-                    one that stands behind another could not turn to the escape */
-    void *state; /* of the rule */
+    bool fits; /* above the escape a channel may be given only to a packet that it can hold whole:
+                  one that stands behind another could not turn to the escape */
+    bool kept; /* behind the first router the way needs no division, draw or load to be found again:
+                  see routing_steps */
+    void *state;                                      /* of the rule */
     void (*keep)(struct routing *r, struct arena *a); /* see routing_keep; NULL: nothing */
 };
 
@@ -101,6 +103,36 @@ static inline void routing_take(const struct routing *r, struct route *p,
     p->channel = channel;
     p->hops++;
 }
+
+/* Ways behind the first router, of rules by which these depend on few states of a packet: a byte
+ * for each state, router and goal. Low bits: the output, as links that leave the router are
+ * numbered, or one of ROUTING_STEP_*; above them the state behind it, which names the channels. */
+struct routing_steps {
+    int nstate;
+    const uint8_t *step;                    /* (nstate x nrouter x nrouter) */
+    uint8_t first[4], count[4];             /* channels of a link by the state behind it */
+    uint8_t eject_first[4], eject_count[4]; /* channels out of the network, by state */
+    int fan;      /* of ROUTING_STEP_ANY: outputs `any`, `any` + 1, ... of the router, by chance */
+    uint8_t *any; /* (nrouter) */
+};
+
+enum {
+    ROUTING_STEP_BITS = 6,
+    ROUTING_STEP_MOST = 60, /* outputs of a router, at most */
+    ROUTING_STEP_ANY = 61,  /* one of some outputs, drawn by routing_draw */
+    ROUTING_STEP_TURN,      /* the first leg ends: on to the target, in the state of the step */
+    ROUTING_STEP_EJECT
+};
+
+/* routing_steps: these for rule r, memory from `a`; NULL: the rule is not of that kind, or the
+ * network large. */
+const struct routing_steps *routing_steps(const struct routing *r, struct arena *a);
+
+/* routing_state: the state of p, which has left its first router; *goal: where its leg ends. */
+int routing_state(const struct routing *r, const struct route *p, int *goal);
+
+/* routing_draw: a random number below n >= 1 of packet p. */
+int routing_draw(struct route *p, int n);
 
 /* routing_empty: one step of p through an empty network, over *link; false when it is there. */
 bool routing_empty(const struct routing *r, struct route *p, int *link);

@@ -236,9 +236,11 @@ static int distance_next(const struct routing *r, struct route *p, const struct 
 enum { MESHES = 1 << TOPOLOGY_MESH | 1 << TOPOLOGY_HYPERCUBE, RINGS = 1 << TOPOLOGY_TORUS };
 
 const struct routing_type routing_adaptive_types[] = {
-    {ROUTING_ADAPTIVE, MESHES | RINGS, escape_create, NULL, escape_next, NULL},
-    {ROUTING_BOOKSIM_MIN_ADAPT, MESHES, booksim_create, NULL, booksim_mesh_next, NULL},
-    {ROUTING_BOOKSIM_MIN_ADAPT, RINGS, booksim_create, NULL, booksim_torus_next, NULL},
-    {ROUTING_ADAPTIVE, 0, distance_create, NULL, distance_next, NULL},
-    {0, 0, NULL, NULL, NULL, NULL},
+    {ROUTING_ADAPTIVE, MESHES | RINGS, escape_create, NULL, escape_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_BOOKSIM_MIN_ADAPT, MESHES, booksim_create, NULL, booksim_mesh_next, NULL,
+     ROUTING_BY_MORE},
+    {ROUTING_BOOKSIM_MIN_ADAPT, RINGS, booksim_create, NULL, booksim_torus_next, NULL,
+     ROUTING_BY_MORE},
+    {ROUTING_ADAPTIVE, 0, distance_create, NULL, distance_next, NULL, ROUTING_BY_MORE},
+    {0, 0, NULL, NULL, NULL, NULL, 0},
 };

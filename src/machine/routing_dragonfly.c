@@ -23,6 +23,7 @@ static void dragonfly_keep(struct routing *r, struct arena *a)
             if (topology_next(t, &c, &h)) next[from * n + to] = h.link;
         }
     r->state = next;
+    r->kept = true;
 }
 
 static bool dragonfly_create(struct routing *r, struct arena *a, struct err *e)
@@ -129,8 +130,8 @@ enum { DRAGONFLIES = 1 << TOPOLOGY_DRAGONFLY };
 
 const struct routing_type routing_dragonfly_types[] = {
     {ROUTING_BOOKSIM_MIN, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next,
-     dragonfly_eject},
+     dragonfly_eject, ROUTING_BY_STAGE},
     {ROUTING_BOOKSIM_UGAL, DRAGONFLIES, dragonfly_create, dragonfly_inject, dragonfly_next,
-     dragonfly_eject},
-    {0, 0, NULL, NULL, NULL, NULL},
+     dragonfly_eject, ROUTING_BY_STAGE},
+    {0, 0, NULL, NULL, NULL, NULL, 0},
 };

@@ -5,6 +5,18 @@
 #include "base/check.h"
 #include "machine/routing.h"
 
+/* Beside the router and the goal (routing_steps). ROUTING_BY_ORDER: on phase, which stays.
+ * ROUTING_BY_LEG: phase 0 leads to the router `via`, 1 to the target. ROUTING_BY_STAGE: on part; 0
+ * leads to the node `via`. ROUTING_BY_CHANCE: nothing, but there may be a draw. */
+enum routing_state_kind {
+    ROUTING_BY_MORE,
+    ROUTING_BY_GOAL,
+    ROUTING_BY_ORDER,
+    ROUTING_BY_LEG,
+    ROUTING_BY_STAGE,
+    ROUTING_BY_CHANCE
+};
+
 struct routing_type {
     enum routing_rule rule;
     unsigned families; /* bits 1 << TOPOLOGY_x; 0: all with links */
@@ -16,6 +28,7 @@ struct routing_type {
                 struct route_option *option);
     /* NULL: any channel */
     int (*eject)(const struct routing *r, const struct route *p, int *first);
+    enum routing_state_kind state; /* on what the way behind the first router depends */
 };
 
 enum { ROUTING_KEEP_MOST = 256 }; /* routers of a network of which pairs are kept */
@@ -23,9 +36,6 @@ enum { ROUTING_KEEP_MOST = 256 }; /* routers of a network of which pairs are kep
 /* The rules by file, each list ended by one without `create`. */
 extern const struct routing_type routing_lattice_types[], routing_adaptive_types[],
     routing_leg_types[], routing_tree_types[], routing_dragonfly_types[];
-
-/* routing_draw: a random number below n >= 1 of packet p. */
-int routing_draw(struct route *p, int n);
 
 /* routing_used: flits on `link` that are not yet accounted for; 0 in an empty network. */
 int64_t routing_used(const struct routing_view *view, int link);

@@ -73,6 +73,7 @@ static void order_keep(struct routing *r, struct arena *a)
                 slot[from * n + to] = (uint8_t)(g->first[d] + (g->direct ? y : y < x));
             }
         g->slot[descending] = slot;
+        r->kept = true;
     }
 }
 
@@ -286,11 +287,14 @@ enum {
 };
 
 const struct routing_type routing_lattice_types[] = {
-    {ROUTING_BOOKSIM_DIM_ORDER, GRIDS | DIRECT, order_create, NULL, order_next, NULL},
-    {ROUTING_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL},
-    {ROUTING_ADAPTIVE_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL},
-    {ROUTING_ROMM, GRIDS, through_create, NULL, through_next, NULL},
-    {ROUTING_BOOKSIM_VALIANT, GRIDS | DIRECT, through_create, NULL, through_next, NULL},
-    {ROUTING_BOOKSIM_UGAL, DIRECT, butterfly_create, NULL, butterfly_next, NULL},
-    {0, 0, NULL, NULL, NULL, NULL},
+    {ROUTING_BOOKSIM_DIM_ORDER, GRIDS | DIRECT, order_create, NULL, order_next, NULL,
+     ROUTING_BY_GOAL},
+    {ROUTING_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL, ROUTING_BY_ORDER},
+    {ROUTING_ADAPTIVE_XY_YX, MESHES | DIRECT, either_create, NULL, either_next, NULL,
+     ROUTING_BY_ORDER},
+    {ROUTING_ROMM, GRIDS, through_create, NULL, through_next, NULL, ROUTING_BY_LEG},
+    {ROUTING_BOOKSIM_VALIANT, GRIDS | DIRECT, through_create, NULL, through_next, NULL,
+     ROUTING_BY_LEG},
+    {ROUTING_BOOKSIM_UGAL, DIRECT, butterfly_create, NULL, butterfly_next, NULL, ROUTING_BY_LEG},
+    {0, 0, NULL, NULL, NULL, NULL, 0},
 };

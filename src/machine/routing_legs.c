@@ -83,10 +83,10 @@ static int legs_next(const struct routing *r, struct route *p, const struct rout
 }
 
 const struct routing_type routing_leg_types[] = {
-    {ROUTING_DETERMINISTIC, 0, legs_create, NULL, legs_next, NULL},
-    {ROUTING_BOOKSIM_MIN, 1 << TOPOLOGY_GRAPH, legs_create, NULL, legs_next, NULL},
-    {ROUTING_VALIANT, 0, legs_create, NULL, legs_next, NULL},
-    {ROUTING_UGAL_L, 0, legs_create, NULL, legs_next, NULL},
-    {ROUTING_UGAL_G, 0, legs_create, NULL, legs_next, NULL},
-    {0, 0, NULL, NULL, NULL, NULL},
+    {ROUTING_DETERMINISTIC, 0, legs_create, NULL, legs_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_BOOKSIM_MIN, 1 << TOPOLOGY_GRAPH, legs_create, NULL, legs_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_VALIANT, 0, legs_create, NULL, legs_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_UGAL_L, 0, legs_create, NULL, legs_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_UGAL_G, 0, legs_create, NULL, legs_next, NULL, ROUTING_BY_MORE},
+    {0, 0, NULL, NULL, NULL, NULL, 0},
 };

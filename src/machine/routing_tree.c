@@ -16,7 +16,7 @@ static bool tree_create(struct routing *r, struct arena *a, struct err *e)
     g->nswitch = r->topology->nrouter / r->topology->spec->dims[1];
     r->state = g;
     r->by_load = r->rule != ROUTING_NCA;
-    r->minimal = true;
+    r->minimal = r->kept = true;
     if (r->rule != ROUTING_ADAPTIVE) r->most = 1;
     if (g->k > ROUTING_MOST_OPTIONS)
         return err_set(e, ERR_CONFIG,
@@ -71,8 +71,8 @@ static int tree_next(const struct routing *r, struct route *p, const struct rout
 enum { TREES = 1 << TOPOLOGY_FAT_TREE };
 
 const struct routing_type routing_tree_types[] = {
-    {ROUTING_NCA, TREES, tree_create, NULL, tree_next, NULL},
-    {ROUTING_ANCA, TREES, tree_create, NULL, tree_next, NULL},
-    {ROUTING_ADAPTIVE, TREES, tree_create, NULL, tree_next, NULL},
-    {0, 0, NULL, NULL, NULL, NULL},
+    {ROUTING_NCA, TREES, tree_create, NULL, tree_next, NULL, ROUTING_BY_CHANCE},
+    {ROUTING_ANCA, TREES, tree_create, NULL, tree_next, NULL, ROUTING_BY_MORE},
+    {ROUTING_ADAPTIVE, TREES, tree_create, NULL, tree_next, NULL, ROUTING_BY_MORE},
+    {0, 0, NULL, NULL, NULL, NULL, 0},
 };

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/picoseconds.h"
+#include "net/net_clocked.h"
 
 /* A message under way, or one that waits for the next to start. */
 struct under_way {
@@ -172,19 +173,25 @@ static void initial_make(struct replay *r, struct arena *a)
     r->initial = sort_by_time(list, swap, r->ninitial, r->q->time);
 }
 
+/* What never arrives keeps SIM_NEVER. */
+static void result_clear(const struct replay *r)
+{
+    const struct traffic_result *out = r->result;
+    for (int m = 0; m < r->q->nmessage; m++) {
+        if (out->arrival) out->arrival[m] = SIM_NEVER;
+        if (out->injected) out->injected[m] = SIM_NEVER;
+        if (out->uncontended) out->uncontended[m] = SIM_NEVER;
+    }
+}
+
 static void replay_make(struct replay *r, struct arena *a)
 {
     const struct traffic *q = r->q;
     int n = q->nmessage;
     r->arena = a;
     r->ready = TAKE(a, n + 1, sim_ps);
-    for (int m = 0; m < n; m++) {
-        r->ready[m] = q->time[m];
-        /* What never arrives keeps SIM_NEVER. */
-        if (r->result->arrival) r->result->arrival[m] = SIM_NEVER;
-        if (r->result->injected) r->result->injected[m] = SIM_NEVER;
-        if (r->result->uncontended) r->result->uncontended[m] = SIM_NEVER;
-    }
+    for (int m = 0; m < n; m++) r->ready[m] = q->time[m];
+    result_clear(r);
     dependents_make(r, a);
     initial_make(r, a);
 }
@@ -194,6 +201,33 @@ static void replay_make(struct replay *r, struct arena *a)
 static bool is_over(const struct replay *r)
 {
     return r->q->stop > 0 && sim_pending(r->sim) > 0 && sim_next_time(r->sim) > r->q->stop;
+}
+
+/* The list in cycles, where it and the network are of that kind (net_clocked.h). */
+static bool replay_clocked(const struct replay *r, bool want_links)
+{
+    const struct traffic *q = r->q;
+    struct traffic_result *out = r->result;
+    /* What would have been without others is told by the levels alone. */
+    if (q->singly || q->dep_first || want_links || out->uncontended) return false;
+    const struct clocked_list list = {.count = q->nmessage,
+                                      .src = q->src,
+                                      .dst = q->dst,
+                                      .bytes = q->bytes,
+                                      .time = q->time,
+                                      .order = r->initial,
+                                      .stop = q->stop};
+    struct clocked_result c = {.arrival = out->arrival, .injected = out->injected};
+    if (!net_clocked(r->net, &list, &c)) return false;
+    out->arrived = c.arrived;
+    out->makespan = c.makespan;
+    out->events = c.events;
+    out->digest = c.digest;
+    out->link = NULL;
+    out->nlink = 0;
+    out->deadlock = false;
+    out->clocked = true;
+    return true;
 }
 
 static void replay_run(struct replay *r, struct arena *a)
@@ -230,16 +264,20 @@ bool traffic_run(const struct traffic *q, const struct machine_spec *m, const st
     if (!traffic_check(q, t, e)) return false;
     out->makespan = 0;
     out->arrived = 0;
+    out->clocked = false;
     out->text[0] = '\0';
     struct replay r = {.q = q, .sim = sim_create(), .result = out};
     r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
     if (r.net && !all_taken(r.net, q, e)) r.net = NULL;
     if (r.net) {
         /* Messages that wait for others start in the order of events. */
-        r.ahead = !q->singly && net_gather(r.net);
-        r.gathers = r.ahead && !q->dep_first;
         replay_make(&r, a);
-        replay_run(&r, a);
+        if (!replay_clocked(&r, want_links)) {
+            r.ahead = !q->singly && net_gather(r.net);
+            r.gathers = r.ahead && !q->dep_first;
+            result_clear(&r);
+            replay_run(&r, a);
+        }
     }
     sim_destroy(r.sim);
     return r.net != NULL;

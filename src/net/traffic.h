@@ -18,9 +18,9 @@ struct traffic {
     sim_ps *delay;  /* (nmessage) after the last dependency's arrival [ps] */
     /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
     int *dep_first;
-    int *dep;       /* numbers of other messages */
-    sim_ps stop;    /* nothing that happens later is simulated [ps]; 0: all is */
-    bool singly;    /* an event for everything, also where one for all of an instant would do */
+    int *dep;    /* numbers of other messages */
+    sim_ps stop; /* nothing that happens later is simulated [ps]; 0: all is */
+    bool singly; /* an event for everything, also where one for all of an instant would do */
 };
 
 /* What a replay tells; the arrays are the caller's, (nmessage) or NULL where not wanted. */
@@ -30,6 +30,7 @@ struct traffic_result {
     int arrived;
     int64_t events;  /* dispatched, those that start messages included */
     uint64_t digest; /* of the events */
+    bool clocked;    /* it was played in cycles (net_clocked.h) */
     int nlink;
     const struct link_load *link; /* when asked for, in the arena */
     /* messages are left that nothing can move; text names the cycle */

@@ -1,5 +1,6 @@
-/* test_gather.c - one event for all of an instant gives the times of an event for everything:
- * random networks, rules, routers, loads, sizes and times, every result bit for bit. */
+/* test_gather.c - one event for all of an instant gives the times of an event for everything, and
+ * so do lists that are played in cycles: random networks, rules, routers, loads, sizes and times,
+ * every result bit for bit. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -141,6 +142,28 @@ static bool play(const struct machine_spec *m, const struct traffic *q, bool sin
     return traffic_run(&list, m, t, a, true, r, e);
 }
 
+/* In cycles, where the list is for that; nobody asks for loads then. */
+static void play_in_cycles(const struct machine_spec *m, const struct traffic *q, struct arena *a,
+                           const struct traffic_result *x, int trial, int *clocked)
+{
+    struct err e;
+    err_clear(&e);
+    const struct topology *t = topology_create(&m->topology, a, &e);
+    struct traffic_result z = {.arrival = TAKE(a, q->nmessage, sim_ps),
+                               .injected = TAKE(a, q->nmessage, sim_ps)};
+    assert_true(t && traffic_run(q, m, t, a, false, &z, &e));
+    *clocked += z.clocked;
+    for (int i = 0; i < q->nmessage; i++)
+        if (x->arrival[i] != z.arrival[i] || x->injected[i] != z.injected[i])
+            fail_msg("trial %d, message %d of %d: %lld to %lld, in cycles %lld to %lld", trial, i,
+                     q->nmessage, (long long)x->injected[i], (long long)x->arrival[i],
+                     (long long)z.injected[i], (long long)z.arrival[i]);
+    assert_int_equal(x->makespan, z.makespan);
+    assert_int_equal(x->arrived, z.arrived);
+    assert_int_equal(x->deadlock, z.deadlock);
+    assert_string_equal(x->text, z.text);
+}
+
 static void same(const struct traffic_result *x, const struct traffic_result *y, int n, int trial)
 {
     for (int m = 0; m < n; m++)
@@ -173,7 +196,7 @@ static void gathered_and_single_events_give_the_same(void **state)
     (void)state;
     enum { TRIALS = 800 };
     struct random r = random_make(5, 6, 7);
-    int played = 0, fewer = 0, locked = 0;
+    int played = 0, fewer = 0, locked = 0, clocked = 0;
     uint64_t times = DIGEST_START;
     for (int trial = 0; trial < TRIALS; trial++) {
         struct arena *a = arena_create();
@@ -191,6 +214,7 @@ static void gathered_and_single_events_give_the_same(void **state)
         if (play(&m, &q, true, a, &x, &e)) {
             assert_true(play(&m, &q, false, a, &y, &e));
             same(&x, &y, q.nmessage, trial);
+            if (trial % 4 == 0) play_in_cycles(&m, &q, a, &x, trial, &clocked);
             times = times_mix(times, &x, q.nmessage);
             played++;
             fewer += y.events < x.events;
@@ -198,8 +222,8 @@ static void gathered_and_single_events_give_the_same(void **state)
         }
         arena_destroy(a);
     }
-    print_message("%d lists played, %d with fewer events, %d to a deadlock\n", played, fewer,
-                  locked);
+    print_message("%d lists played, %d with fewer events, %d in cycles, %d to a deadlock\n", played,
+                  fewer, clocked, locked);
     assert_true(played > TRIALS / 4 && fewer > played / 3);
     assert_int_equal(times, TIMES);
 }
@@ -275,6 +299,117 @@ static void who_lost_does_not_try_again_in_the_same_instant(void **state)
     for (int i = 0; i < 3; i++) lists_agree(&m, 4, trial[i]);
 }
 
+/* Machines and lists that can be played in cycles: links of one rate, times on the cycle, messages
+ * of one packet; loads from next to nothing to far beyond saturation. Counts those that are. */
+static void list_in_cycles_agrees(int trial, int *played, int *clocked)
+{
+    static const double cable[] = {1e-9, 9e-9, 99e-9, 300e-9};
+    struct random r = random_make((uint64_t)trial, 9, 10);
+    struct arena *a = arena_create();
+    struct topology_spec s = draw_network(&r);
+    struct err e;
+    err_clear(&e);
+    for (int d = 0; below(&r, 3) == 0 && d < 2 && d < s.ndim; d++)
+        s.dim_latency[d] = cable[below(&r, 4)];
+    struct machine_spec m = draw_machine(&r, &s);
+    if (m.network.credit_latency < 1e-9 && below(&r, 8)) m.network.credit_latency = 1e-9;
+    if (below(&r, 8)) m.network.hop_latency = (3 + below(&r, 4)) * 1e-9;
+    m.network.packet_bytes = 0;
+    const struct topology *t = topology_create(&m.topology, a, &e);
+    struct traffic q;
+    struct traffic_result x;
+    assert_non_null(t);
+    draw_list(&r, t->nnode, a, &q);
+    q.dep_first = NULL;
+    const int longest = below(&r, 3) ? 1 + below(&r, 4) : 16;
+    for (int i = 0; i < q.nmessage; i++) {
+        q.bytes[i] = 16 * (q.bytes[i] / 16 % longest);
+        q.time[i] = q.time[i] / 1000 * 1000;
+    }
+    if (play(&m, &q, true, a, &x, &e)) {
+        play_in_cycles(&m, &q, a, &x, trial, clocked);
+        ++*played;
+    }
+    arena_destroy(a);
+}
+
+/* The last ones are those of some 29,000 in which it matters that a lane tries once in a cycle. */
+static void lists_in_cycles_agree(void **state)
+{
+    (void)state;
+    enum { TRIALS = 300 };
+    static const int once[] = {788,   1139,  1487,  5908,  7798,  7844,  10516, 10744, 11665,
+                               11859, 12314, 14468, 15173, 18580, 18654, 20159, 20168, 20792,
+                               22921, 23553, 23743, 24046, 24722, 25018, 26898, 28720};
+    int played = 0, clocked = 0;
+    for (int trial = 0; trial < TRIALS; trial++) list_in_cycles_agrees(trial, &played, &clocked);
+    for (size_t i = 0; i < sizeof once / sizeof *once; i++)
+        list_in_cycles_agrees(once[i], &played, &clocked);
+    print_message("%d lists played, %d in cycles\n", played, clocked);
+    assert_true(clocked > played / 2);
+}
+
+/* One message after the other over a mesh: `n` of them, every `gap` from `first` on. Returns
+ * whether they were played in cycles; the times are those of events in any case. */
+static bool far_list_agrees(const struct machine_spec *m, int n, sim_ps first, sim_ps gap,
+                            sim_ps stop)
+{
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    struct traffic q = {.nmessage = n,
+                        .src = TAKE(a, n, int),
+                        .dst = TAKE(a, n, int),
+                        .bytes = TAKE(a, n, int64_t),
+                        .time = TAKE(a, n, sim_ps),
+                        .delay = TAKE(a, n, sim_ps),
+                        .stop = stop};
+    for (int i = 0; i < n; i++) {
+        q.src[i] = i % 9;
+        q.dst[i] = (i * 5 + 1) % 9;
+        q.bytes[i] = 64;
+        q.time[i] = first + i * gap;
+    }
+    struct traffic_result x;
+    int clocked = 0;
+    assert_true(play(m, &q, true, a, &x, &e));
+    play_in_cycles(m, &q, a, &x, n, &clocked);
+    arena_destroy(a);
+    return clocked > 0;
+}
+
+/* Times of cycles are 32 bits: what may come near their end is played by events, also where it is
+ * beyond the end that a list stops, or begins. */
+static void late_cycles_are_played_by_events(void **state)
+{
+    (void)state;
+    const struct topology_spec s = {.family = TOPOLOGY_MESH,
+                                    .ndim = 2,
+                                    .dims = {3, 3},
+                                    .nodes_per_router = 1,
+                                    .processors_per_node = 1};
+    struct machine_spec m = netcheck_machine(&s, 2, 16, 0, 3);
+    m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
+    const sim_ps cycle = 1000, last = (sim_ps)1 << 30;
+    for (int level = 0; level < 2; level++) {
+        m.network.level = level ? LEVEL_FLIT : LEVEL_PACKET;
+        assert_true(far_list_agrees(&m, 40, 0, 7 * cycle, 0));
+        /* Far into the run, but not too far; idle between messages for long. */
+        assert_true(far_list_agrees(&m, 40, (last - 100000) * cycle, 7 * cycle, 0));
+        assert_true(far_list_agrees(&m, 40, 5 * cycle, last / 41 * cycle, 0));
+        assert_true(far_list_agrees(&m, 40, 0, 7 * cycle, 4 * last * cycle));
+        /* Across the limit while the last messages are under way; by those that begin; across that
+         * of 31 and of 32 bits. */
+        assert_false(far_list_agrees(&m, 40, (last - 45) * cycle, cycle, 0));
+        assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, 0));
+        assert_false(far_list_agrees(&m, 40, 0, last / 8 * cycle, 0));
+        assert_false(far_list_agrees(&m, 40, (2 * last - 20) * cycle, 7 * cycle, 0));
+        assert_false(far_list_agrees(&m, 40, (4 * last - 20) * cycle, 7 * cycle, 0));
+        assert_false(far_list_agrees(&m, 40, 4 * last * cycle, 7 * cycle, 0));
+        assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, (last + 9) * cycle));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -282,6 +417,8 @@ int main(void)
         cmocka_unit_test(a_head_that_did_not_ask_has_no_second_look),
         cmocka_unit_test(who_lost_does_not_try_again_in_the_same_instant),
         cmocka_unit_test(gathered_and_single_events_give_the_same),
+        cmocka_unit_test(lists_in_cycles_agree),
+        cmocka_unit_test(late_cycles_are_played_by_events),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

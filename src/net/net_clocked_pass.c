@@ -1,0 +1,479 @@
+/* net_clocked_pass.c - what moves from lane to lane, and looks at routers in which a lane is alone
+ * (net_router_pass.c, in cycles).
+ *
+ * What moves is a whole packet at level packet, and flits at level flit. Flits look ahead: those
+ * whose times are known already, and whose way nobody can dispute before, go in one step. The
+ * records then tell the future, so that whoever reads them compares with now. */
+#include "net/net_clocked_step.h"
+
+/* ---- moving on ---- */
+
+/* From when on v of port p, which is nobody's, is clear. */
+static inline void lane_clears(const struct clocked *g, struct clocked_lane *v,
+                               const struct clocked_port *p)
+{
+    if (v->in == v->out && !v->owned)
+        v->clear = clocked_later(v->free, v->left + g->credit + p->wire);
+}
+
+/* v of port p has a new front, whose head asks from `due` on. Its way is found at once where the
+ * table has it or the rule does not look at loads; else where it stands, in that very cycle. */
+static inline void front_comes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p,
+                               int32_t due)
+{
+    struct clocked_router *o = &g->router[p->to];
+    v->due = due;
+    if (v->front->state >= 0) {
+        v->due += g->setup;
+        clocked_route_on(g, v, p);
+    } else if (g->looks_on || (g->looks && p->from < 0)) {
+        v->head.state = LANE_ROUTING;
+    } else {
+        v->due += g->setup;
+        clocked_route(g, v);
+    }
+    o->busy |= UINT64_C(1) << (v - o->lane);
+    clocked_wake(g, p->to, v->due);
+}
+
+void clocked_front(struct clocked *g, struct clocked_lane *v, struct clocked_port *p)
+{
+    front_comes(g, v, p, clocked_later(v->front->first + g->reach + p->wire, v->left));
+}
+
+/* The front of v has gone. The one behind it, if its head is there or under way, is the new one;
+ * with no such one there is nothing to look at. */
+static inline void front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p)
+{
+    if (v->front && v->front->sent > 0) {
+        clocked_front(g, v, p);
+        return;
+    }
+    v->head.state = LANE_IDLE;
+    g->router[p->to].busy &= ~clocked_bit(g, p, v);
+}
+
+/* A whole packet from v over port p into out, its head at `now`: its flits follow one in a cycle,
+ * so that one entry says when each of them left. */
+static inline void packet_crosses(struct clocked *g, struct clocked_lane *v, struct clocked_port *p,
+                                  struct clocked_lane *out, bool sink, int32_t now)
+{
+    const int32_t flits = v->front->flits;
+    union clocked_stay *stay = &clocked_ring(g, v)[v->nleft++ & g->ring];
+    stay->position = v->out;
+    stay->at = now;
+    v->out += flits;
+    if (sink) return;
+    out->in += flits;
+    out->clear = CLOCKED_NEVER;
+    p->held += flits;
+}
+
+/* When lane w may first compete with v, which sends over `out`: with its next flit, if it has a
+ * channel there; with its head, if that may go there, or nobody knows yet where it goes. Where it
+ * goes elsewhere it is the packet behind it that may, not before its own tail has left. */
+static int32_t competes(const struct clocked *g, const struct clocked_lane *v,
+                        const struct clocked_lane *w, const struct clocked_port *out, int32_t now)
+{
+    int32_t left = w->front->flits;
+    if (w->head.state == LANE_ROUTING) return w->due;
+    const bool meets = w->port == v->port || clocked_ways(w) >> out->out & 1;
+    if (w->head.state == LANE_SENDING) {
+        left -= w->front->ahead->sent;
+        if (meets)
+            return w->out < w->in ? clocked_ring(g, w)[w->out & g->ring].come : now + g->reach;
+    } else if (meets) {
+        return w->due;
+    }
+    return clocked_later(now, w->due) + left + g->setup;
+}
+
+int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
+                           const struct clocked_port *in, const struct clocked_port *out,
+                           int32_t now)
+{
+    const struct clocked_router *o = &g->router[in->to];
+    int32_t until = now + g->tau;
+    /* Beyond that, heads may come that are not known here yet. */
+    uint64_t others = o->busy & ~clocked_bit(g, in, v);
+    for (; others && until > now; others &= others - 1)
+        until = clocked_sooner(until, competes(g, v, &o->lane[__builtin_ctzll(others)], out, now));
+    return until;
+}
+
+/* A flit of v's front over port p into out at `now`, and up to `most` - 1 further ones at cycles
+ * that are known, until when nobody can dispute the way. Returns how many; the last one crosses at
+ * *last. All look ahead alike, but how far is nobody's business: the times are the same. */
+static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
+                                  struct clocked_port *in, struct clocked_port *p,
+                                  struct clocked_lane *out, bool sink, int32_t most, int32_t now,
+                                  int32_t *last)
+{
+    /* From crossing to standing at the next router; flits that v has, or will have. */
+    const int32_t way = g->reach + p->wire, ring = g->ring, here = v->in - v->out;
+    union clocked_stay *const from = clocked_ring(g, v), *const to = clocked_ring(g, out);
+    int32_t k = v->out, at = now, sent = 1;
+    from[k++ & ring].go = now;
+    v->out = k;
+    out->clear = CLOCKED_NEVER;
+    if (!sink) to[out->in++ & ring].come = now + way;
+    *last = now;
+    if (most > here) most = here;
+    if (most > ROUTER_AHEAD) most = ROUTER_AHEAD;
+    if (most == 1) return 1;
+    const int32_t until = clocked_undisputed(g, v, in, p, now);
+    /* Mostly all credits are there. */
+    const int32_t needed = out->in + most - 2 - g->buffer;
+    const bool room = sink || needed < 0 ||
+                      (needed < out->out && to[needed & ring].go + g->credit + p->wire <= now);
+    /* The next flit goes when it is there, the one before has gone, and its credit is back. */
+    for (; sent < most; sent++) {
+        at = clocked_later(from[k & ring].come, at + 1);
+        if (at < until && !room) at = clocked_room(g, out, p, 1, at, false);
+        if (at >= until) break;
+        from[k++ & ring].go = *last = at;
+        v->out = k;
+        if (!sink) to[out->in++ & ring].come = at + way;
+    }
+    if (sent > 1) clocked_crosses(in, p); /* alone it would have won every round */
+    return sent;
+}
+
+/* Whether a head at router o may want a channel that is free from `at` on. */
+static bool somebody_asks(const struct clocked_router *o, int32_t at)
+{
+    for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
+        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
+        if (w->head.state != LANE_SENDING && w->due <= at) return true;
+    }
+    return false;
+}
+
+/* A place has become free, and somebody upstream waits for it: a flit until its credit is back, a
+ * whole packet from now on, as its first flits need no place yet. */
+CLOCKED_INLINED void place_freed(struct clocked *g, struct clocked_lane *v,
+                                 const struct clocked_port *in, int32_t now, const bool whole)
+{
+    if (!v->starved) return;
+    v->starved = false;
+    const int32_t at = whole ? now : now + g->credit + in->wire;
+    if (in->from >= 0) clocked_wake(g, in->from, at);
+    else clocked_wake_source(g, ~in->from, clocked_later(at, g->source[~in->from].free));
+}
+
+/* Flits of v's front are left: a look when the next one is there and the input is free. */
+static inline void rest_waits(struct clocked *g, const struct clocked_lane *v,
+                              const struct clocked_port *in)
+{
+    if (v->out < v->in)
+        clocked_wake(g, in->to,
+                     clocked_later(in->passed, clocked_ring(g, v)[v->out & g->ring].come));
+}
+
+/* A tail has crossed from v of port in into out at `tail`: the channel is free, and v has a new
+ * front. */
+static inline void tail_sent(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
+                             struct clocked_lane *out, const struct clocked_port *p, int32_t tail)
+{
+    out->owned = false;
+    out->free = tail + 1 + g->pause;
+    lane_clears(g, out, p);
+    lane_clears(g, v, in);
+    front_changes(g, v, in);
+    /* Others may want the channel. */
+    if (somebody_asks(&g->router[in->to], out->free)) clocked_wake(g, in->to, out->free);
+}
+
+/* Flits of packet m have crossed port p and are, or will be, in `out`: if m is the front there, its
+ * head starts to ask, or its flits go on. */
+static inline void flits_come(struct clocked *g, struct clocked_port *p, struct clocked_lane *out,
+                              const struct clocked_leg *m, bool head, int32_t now)
+{
+    if (out->front != m) return;
+    if (head) clocked_front(g, out, p);
+    else if (out->head.state == LANE_SENDING) clocked_wake(g, p->to, now + g->reach + p->wire);
+}
+
+/* The steps are in the order of net_router_pass.c. The last one of a tail gives the records back:
+ * its leg in v, and where it leaves the network the one ahead and the packet, too. */
+void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    struct clocked_leg *l = v->front, *m = l->ahead;
+    struct clocked_worm *w = m->worm;
+    struct clocked_lane *out = &g->lane[m->lane];
+    struct clocked_port *in = clocked_port_of(g, v), *p = clocked_port_of(g, out);
+    const bool head = m->sent == 0, sink = p >= g->sink;
+    int32_t tail = now + l->flits - 1, sent = l->flits;
+    if (g->whole) packet_crosses(g, v, p, out, sink, now);
+    else sent = flits_cross(g, v, in, p, out, sink, l->flits - m->sent, now, &tail);
+    m->sent += sent;
+    in->held -= sent;
+    if (!g->whole && !sink) p->held += sent;
+    if (head) m->first = now;
+    p->free = in->passed = v->left = tail + 1;
+    if (!sink) flits_come(g, p, out, m, head, now);
+    place_freed(g, v, in, now, g->whole);
+    if (m->sent < l->flits) {
+        rest_waits(g, v, in);
+        return;
+    }
+    v->front = l->behind;
+    tail_sent(g, v, in, out, p, tail);
+    clocked_leg_return(g, l);
+    if (!sink) return;
+    clocked_delivered(g, w, tail);
+    clocked_leg_return(g, m);
+}
+
+/* ---- a lane that is alone ---- */
+
+/* What a head without rivals finds on one way: the free channel whose turn it is, NULL if there is
+ * none; whether it bids for the switch; when something may be free that is not now. */
+struct chance {
+    struct clocked_lane *channel;
+    int number;
+    uint8_t distance;
+    bool bids;
+    int32_t again;
+};
+
+/* The same for channels first .. first + count - 1 of port p. */
+static inline struct chance find_channel(struct clocked *g, struct clocked_lane *v,
+                                         const struct clocked_port *p, int first, int count,
+                                         int32_t now)
+{
+    const bool sink = p >= g->sink;
+    const int outputs = p->lanes_out;
+    const int32_t unit = g->whole ? v->front->flits : 1;
+    struct chance c = {.again = CLOCKED_NEVER};
+    for (int i = first; i < first + count; i++) {
+        struct clocked_lane *out = &p->lane[i];
+        if (out->owned) continue;
+        int32_t at = clocked_later(now, out->free);
+        /* The bid does not wait for the channel: any that is free with a credit will do. */
+        if (sink) {
+            c.bids |= at == now;
+        } else if (g->whole || (at == now && !c.bids)) {
+            const int32_t room = clocked_room(g, out, p, unit, now, g->whole);
+            c.bids |= at == now && room <= now;
+            if (g->whole) at = clocked_later(at, room);
+        }
+        if (at > now) {
+            c.again = clocked_sooner(c.again, at);
+        } else if (!c.channel || clocked_after(outputs + i, v->accept) < c.distance) {
+            c.channel = out;
+            c.number = i;
+            c.distance = clocked_after(outputs + i, v->accept);
+        }
+    }
+    return c;
+}
+
+/* The front of v, alone, gets channel `number` of port p and the switch in the same cycle, and
+ * goes. Where all of it goes at once, nobody ever owns the channel, and its leg moves from one FIFO
+ * to the next instead of being made anew. */
+CLOCKED_INLINED void pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
+                             struct clocked_port *p, int number, int32_t now, const bool whole)
+{
+    struct clocked_lane *out = &p->lane[number];
+    struct clocked_leg *l = v->front, *m = l;
+    const bool sink = p >= g->sink;
+    int32_t sent = l->flits, tail = now + sent - 1;
+    if (whole) packet_crosses(g, v, p, out, sink, now);
+    else sent = flits_cross(g, v, in, p, out, sink, sent, now, &tail);
+    in->held -= sent;
+    if (!whole && !sink) p->held += sent;
+    p->free = in->passed = v->left = tail + 1;
+    if (whole || sent == l->flits) {
+        v->front = l->behind;
+        if (!sink) {
+            if (l->state < 0) clocked_taken(g, v, l, p, number);
+            l->behind = l->ahead = NULL;
+            l->lane = clocked_number(g, out);
+            clocked_enter(out, l);
+        }
+    } else {
+        clocked_own(g, v, out);
+        m = l->ahead;
+    }
+    m->sent = sent;
+    m->first = now;
+    if (!sink) flits_come(g, p, out, m, true, now);
+    place_freed(g, v, in, now, whole);
+    if (!whole && sent < l->flits) {
+        rest_waits(g, v, in);
+        return;
+    }
+    tail_sent(g, v, in, out, p, tail);
+    if (!sink) return;
+    struct clocked_worm *w = l->worm;
+    clocked_leg_return(g, l);
+    clocked_delivered(g, w, tail);
+}
+
+/* Of the channels that v's only way on offers, the one whose turn it is; -1: none is there, or not
+ * clear at once. A channel that is clear has all its credits; at level packet one that is not may
+ * have room enough. Those behind the turn come round. */
+CLOCKED_INLINED int clear_channel(struct clocked *g, const struct clocked_lane *v,
+                                  const struct clocked_port *p, int32_t now, const bool whole)
+{
+    const int count = v->head.count, turn = v->accept - p->lanes_out - v->head.first;
+    int k = turn >= 0 && turn < count ? turn : 0;
+    for (int i = 0; i < count; i++) {
+        const int number = v->head.first + k;
+        struct clocked_lane *out = &p->lane[number];
+        if (out->clear <= now) {
+            clocked_restart(out);
+            return number;
+        }
+        if (++k == count) k = 0;
+        if (out->owned || out->free > now) continue;
+        if (!whole) return -1;
+        if (v->head.noption > 0 && clocked_room(g, out, p, v->front->flits, now, true) <= now)
+            return number;
+    }
+    return -1;
+}
+
+/* A head with one way on, of lane number `input` of its router, whose channel and switch are free:
+ * all turns move on as the allocators would have moved them. */
+CLOCKED_INLINED bool head_quick(struct clocked *g, struct clocked_lane *v, int input,
+                                struct clocked_port *in, int channel, int32_t now, const bool whole)
+{
+    struct clocked_port *p = v->way;
+    if (in->passed > now || p->free > now) return false;
+    const int number = clear_channel(g, v, p, now, whole);
+    if (number < 0) return false;
+    clocked_crosses(in, p);
+    in->turn = clocked_next_channel(g, channel);
+    clocked_given(v, input, &p->lane[number], p->lanes_out + number);
+    pass_on(g, v, in, p, number, now, whole);
+    return true;
+}
+
+__attribute__((noinline)) bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    struct clocked_port *in = clocked_port_of(g, v);
+    const int input = (int)(v - g->router[in->to].lane), channel = clocked_channel_of(in, v);
+    return g->whole ? head_quick(g, v, input, in, channel, now, true)
+                    : head_quick(g, v, input, in, channel, now, false);
+}
+
+/* A head that asks, with one way on. It gets its channel even if it cannot send yet: then it owns
+ * it, and bids again in the next cycle. Returns when to look again. */
+static int32_t head_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    struct clocked_port *in = clocked_port_of(g, v), *p = v->way;
+    const struct chance c = find_channel(g, v, p, v->head.first, v->head.count, now);
+    int32_t again = c.again;
+    bool bids = c.bids;
+    const int32_t at = clocked_later(in->passed, p->free);
+    /* A bid for a switch that is not free is none. */
+    if (bids && at > now) {
+        again = clocked_sooner(again, at);
+        bids = false;
+    }
+    if (bids) {
+        clocked_crosses(in, p);
+        in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
+    }
+    if (bids || c.channel) clocked_tries(g, v);
+    /* A bid without a channel has spent its turn. */
+    if (!c.channel) return bids ? clocked_sooner(again, now + 1) : again;
+    clocked_given(v, (int)(v - g->router[in->to].lane), c.channel, p->lanes_out + c.number);
+    if (bids && (g->whole || p >= g->sink || clocked_room(g, c.channel, p, 1, now, false) <= now)) {
+        if (c.channel->clear <= now) clocked_restart(c.channel);
+        if (g->whole) pass_on(g, v, in, p, c.number, now, true);
+        else pass_on(g, v, in, p, c.number, now, false);
+        return again;
+    }
+    clocked_own(g, v, c.channel);
+    return clocked_sooner(again, now + 1);
+}
+
+/* The output for which v's head bids with success: of those where it `may`, the ones of the highest
+ * priority (strict: all), then by turn. NULL: none is free. *again: when to look again, if sooner.
+ */
+static struct clocked_port *find_output(struct clocked *g, const struct clocked_lane *v,
+                                        const struct clocked_port *in, const bool *may, int32_t now,
+                                        int32_t *again)
+{
+    struct clocked_port *bid[CLOCKED_OPTIONS], *best = NULL;
+    int nbid = 0, top = -1;
+    /* What may go somewhere with priority does not bid elsewhere. */
+    for (int i = 0; i < v->head.noption; i++)
+        if (may[i] && clocked_option(g, v, i).priority > top)
+            top = clocked_option(g, v, i).priority;
+    for (int i = 0; i < v->head.noption; i++) {
+        const struct clocked_way o = clocked_option(g, v, i);
+        if (!may[i] || (!g->strict && o.priority != top)) continue;
+        int32_t at = clocked_later(in->passed, o.port->free);
+        int k = 0;
+        while (k < nbid && bid[k] != o.port) k++;
+        if (at <= now && k < nbid) at = now + 1;
+        if (at > now) {
+            *again = clocked_sooner(*again, at);
+            continue;
+        }
+        clocked_tries(g, v);
+        bid[nbid++] = o.port;
+        if (!best || clocked_after(o.port->out, in->accept) < clocked_after(best->out, in->accept))
+            best = o.port;
+    }
+    if (nbid > 1) *again = clocked_sooner(*again, now + 1);
+    return best;
+}
+
+/* A head that asks, with several ways on. The channel and the output of the switch are chosen
+ * apart, by different turns; the head goes at once only where both are of one port. */
+static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    bool may[CLOCKED_OPTIONS], bars = false;
+    struct chance best = {.again = CLOCKED_NEVER};
+    int priority = 0;
+    int32_t again = CLOCKED_NEVER;
+    struct clocked_port *in = clocked_port_of(g, v), *from = NULL;
+    for (int i = 0; i < v->head.noption; i++) {
+        const struct clocked_way o = clocked_option(g, v, i);
+        const int level = g->priority ? o.priority : 0;
+        const struct chance c = find_channel(g, v, o.port, o.first, o.count, now);
+        again = clocked_sooner(again, c.again);
+        may[i] = c.bids;
+        /* A strict rule's head goes only where all its ways are open. */
+        bars = bars || (g->strict && !c.bids);
+        if (!c.channel) continue;
+        clocked_tries(g, v);
+        if (best.channel &&
+            (level < priority || (level == priority && c.distance >= best.distance)))
+            continue;
+        best = c;
+        priority = level;
+        from = o.port;
+    }
+    struct clocked_port *p = find_output(g, v, in, may, now, &again);
+    if (p) {
+        clocked_crosses(in, p);
+        if (!bars) in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
+    }
+    if (from) {
+        clocked_given(v, (int)(v - g->router[in->to].lane), best.channel,
+                      from->lanes_out + best.number);
+        clocked_own(g, v, best.channel);
+    }
+    if (p && !bars && from == p &&
+        clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now)
+        clocked_send(g, v, now);
+    else if (p) again = clocked_sooner(again, now + 1);
+    return from && clocked_waits(v) ? clocked_sooner(again, now + 1) : again;
+}
+
+int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    if (v->head.state != LANE_SENDING)
+        return v->head.noption > 1 ? head_choosing(g, v, now) : head_alone(g, v, now);
+    struct clocked_port *in = clocked_port_of(g, v);
+    clocked_crosses(in, clocked_port_of(g, &g->lane[v->front->ahead->lane]));
+    in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
+    clocked_send(g, v, now);
+    return CLOCKED_NEVER;
+}

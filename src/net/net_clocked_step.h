@@ -1,0 +1,74 @@
+/* net_clocked_step.h - the steps of net_clocked.h, by file: nodes, ways on, lanes that are alone,
+ * lanes that meet, cycles. Each does what its namesake of net_router.h does. */
+#ifndef NET_NET_CLOCKED_STEP_H
+#define NET_NET_CLOCKED_STEP_H
+
+#include "net/net_clocked_lane.h"
+
+/* clocked_cycle: cycle g->now, whose bits are `slot`: nodes, then routers, each by number, then
+ * those that are looked at again. All bits are cleared. */
+void clocked_cycle(struct clocked *g, uint64_t *slot);
+
+/* clocked_source_look: at the way into the network of `node`: messages that have started begin
+ * there one after the other. */
+void clocked_source_look(struct clocked *g, int node, int32_t now);
+
+/* clocked_look_slowly: where a lane is not alone, or its way not clear. Returns when to look
+ * again. */
+int32_t clocked_look_slowly(struct clocked *g, struct clocked_router *o, int32_t now);
+
+/* clocked_route: the way on of v's front, by the rule itself; clocked_route_on: the same by the
+ * table, of v in port p, behind the first router. From now on it asks. */
+void clocked_route(struct clocked *g, struct clocked_lane *v);
+void clocked_route_on(struct clocked *g, struct clocked_lane *v, const struct clocked_port *p);
+
+/* clocked_own: the front of v owns channel `out` from now on, until its tail has crossed.
+ * clocked_send: the front of v sends what moves at once over the channel that it owns. */
+void clocked_own(struct clocked *g, struct clocked_lane *v, struct clocked_lane *out);
+void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now);
+
+/* clocked_pass: v, which is in nobody's way, gets what it asks for, as far as that is there.
+ * Returns when to look at it again; CLOCKED_NEVER: nothing of it needs that. */
+int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now);
+
+/* clocked_quick: the same for a head with one way on, if that is clear; else it does nothing and
+ * returns false. */
+bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now);
+
+/* clocked_front: the head of the front of v, a lane of p, is there or on its way: see
+ * router_front_comes. */
+void clocked_front(struct clocked *g, struct clocked_lane *v, struct clocked_port *p);
+
+/* clocked_leg: a packet's leg at the end of lane v, which is its own from now on. */
+struct clocked_leg *clocked_leg(struct clocked *g, struct clocked_lane *v);
+
+/* clocked_worm: the packet of `message`, at its source. */
+struct clocked_worm *clocked_worm(struct clocked *g, int message);
+
+/* One way on: the channels first .. first + count - 1 of a port. */
+struct clocked_way {
+    struct clocked_port *port;
+    int first, count, priority;
+};
+
+/* clocked_option: way number i of those of v's front; 0 where it leaves the network, too. */
+struct clocked_way clocked_option(const struct clocked *g, const struct clocked_lane *v, int i);
+
+/* clocked_taken: v's front l goes over channel `number` of port p, which is no way out; where its
+ * way was not found in the table. */
+void clocked_taken(struct clocked *g, const struct clocked_lane *v, struct clocked_leg *l,
+                   const struct clocked_port *p, int number);
+
+/* clocked_undisputed: until when nobody can dispute v's way, a lane of `in`, over port out. */
+int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
+                           const struct clocked_port *in, const struct clocked_port *out,
+                           int32_t now);
+
+/* clocked_delivered: w has left the network, its tail at `tail`. */
+void clocked_delivered(struct clocked *g, struct clocked_worm *w, int32_t tail);
+
+/* clocked_used: flits that `link` was given and whose credits are not back (router_used); `of` is
+ * a struct clocked. */
+int64_t clocked_used(const void *of, int link);
+
+#endif
