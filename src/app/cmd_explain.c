@@ -37,7 +37,7 @@ enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS }; /* a sweep has more kinds than one 
 
 /* Sums and maxima over all runs of a plan. */
 struct totals {
-    double host_s, host_bytes; /* sum; largest of a run */
+    double host_s, host_bytes, most_bytes; /* sum; largest of a run, and of other attempts */
 };
 
 /* Runs go one after the other: their times add up, but the memory needed is that of the largest. */
@@ -45,6 +45,8 @@ static void add(struct totals *t, const struct run_estimate *r)
 {
     t->host_s += r->host_s;
     if (r->host_bytes > t->host_bytes) t->host_bytes = r->host_bytes;
+    if (r->host_bytes + r->again_bytes > t->most_bytes)
+        t->most_bytes = r->host_bytes + r->again_bytes;
 }
 
 /* The omissions of a plan's runs, each kind once. */
@@ -273,8 +275,9 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
                r[0].kilogram, r[0].second);
     if (isnan(t.host_s)) printf("\nestimated: not known, the program declares no estimate\n");
     else
-        printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s,
-               t.host_bytes / 1e6);
+        printf("\nestimated: %.2f s of one processor, %.0f MB\n", t.host_s, t.host_bytes / 1e6);
+    if (t.most_bytes > 1.05 * t.host_bytes)
+        printf("where the answer of a run asks for refinement, %.0f MB\n", t.most_bytes / 1e6);
     print_recording(p, r);
     print_threads(p, r);
     print_nodes(p, r);
@@ -351,6 +354,8 @@ static const struct column planned_column[] = {
     {"computing", COLUMN_CHARS, ESTIMATE(node), .doc = "what computing costs by, \"\": rates"},
     {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
     {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
+    {"host_bytes_again", COLUMN_REAL, ESTIMATE(again_bytes),
+     .doc = "more memory, where its answer asks for refinement"},
     {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},
     {"host_threads", COLUMN_INT, ESTIMATE(threads),
      .doc = "that run its ranks on this computer, with --threads auto"},
@@ -434,9 +439,10 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
 static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
 {
     const char *first = NULL;
+    int64_t work = RUN_EXPLAIN_WORK;
     for (int i = 0; i < p->nrun; i++) {
         if (p->run[i].refused) first = first ? first : p->run[i].refused;
-        else if (!run_explain(&p->run[i], &r[i], e)) return false;
+        else if (!run_explain(&p->run[i], &work, &r[i], e)) return false;
     }
     if (first)
         fprintf(stderr, "mimdsim: %d of %d points cannot run; the first: %s\n", p->nrefused,

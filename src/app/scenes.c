@@ -179,8 +179,9 @@ static bool savings(const struct plan *p, struct store *s, struct err *e)
 {
     struct run_estimate *r = memory_zeroed((size_t)p->nrun + 1, sizeof *r);
     struct savings *all = memory_zeroed(1, sizeof *all);
+    int64_t work = RUN_EXPLAIN_WORK;
     bool ok = true;
-    for (int i = 0; ok && i < p->nrun; i++) ok = run_explain(&p->run[i], &r[i], e);
+    for (int i = 0; ok && i < p->nrun; i++) ok = run_explain(&p->run[i], &work, &r[i], e);
     ok = ok && savings_measure(p, r, all, e) && savings_store(s, all, e);
     free(all);
     free(r);

@@ -39,15 +39,16 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
     return true;
 }
 
-/* Host memory of a body, beside the ranks' [B]: model, references in other precisions, serial
- * codes. Peaks of runs with 10^4 and 10^5 bodies on 1 and 16 ranks (host_peak_bytes), less the
- * ranks' part. A chain may be solved again with refinement, which keeps every factor. The last two
- * are what no run was seen to need less than, with the ranks' part. */
+/* Host memory of a body, beside the ranks' [B]: the model; then, when the ranks are gone,
+ * references in other precisions and serial codes. Peaks of runs with 4,096 and 16,384 bodies on 16
+ * and 64 ranks (host_peak_bytes), less the rest. The last two are what no run was seen to need less
+ * than, with the ranks' part. */
 enum {
-    INVERSE_BODY_BYTES = 1900,
-    TREE_BODY_BYTES = 3500,
-    LOOP_BODY_BYTES = 5200,
-    CHAIN_BODY_BYTES = 13500,
+    MODEL_BODY_BYTES = 1284,
+    INVERSE_BODY_BYTES = 1400,
+    TREE_BODY_BYTES = 2300,
+    LOOP_BODY_BYTES = 4000,
+    CHAIN_BODY_BYTES = 3000,
     LEAST_BODY_BYTES = 1900,
     LEAST_FORWARD_BODY_BYTES = 4000
 };
@@ -193,7 +194,8 @@ static void estimate(const struct program_run *r, struct program_estimate *out)
                      : m->nloop > 0           ? LOOP_BODY_BYTES
                      : m->is_chain            ? CHAIN_BODY_BYTES
                                               : TREE_BODY_BYTES;
-    out->scene_bytes = (double)m->nbody * each;
+    out->model_bytes = (double)m->nbody * MODEL_BODY_BYTES;
+    out->reference_bytes = (double)m->nbody * each;
 }
 
 static void leave_out(const struct program_run *r, struct left_out *l)

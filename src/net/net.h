@@ -153,6 +153,12 @@ void net_count_jobs(struct net *n, int njob);
 enum { NET_LINKS_WHOLE = 1 << 21 };
 struct link_load *net_links(const struct net *n, int job, struct arena *a, int *nlink);
 
+/* net_memory: host memory that network n takes in a run whose `nrank` ranks, on the nodes node[i],
+ * send `messages` in all, estimated [B]. `tables`: what net_create took from its arena [B]. They
+ * have a row for each resource, and only pages with rows in use are memory. */
+double net_memory(const struct net *n, size_t tables, const int *node, int nrank,
+                  double messages);
+
 /* net_port_load: the account of the injection port of `node`, for processes that share a run; NULL
  * when not recorded. Its from, to and node are not set. */
 struct link_load *net_port_load(struct net *n, int node);

@@ -399,6 +399,9 @@ static struct fabric *flits_create(struct net *n, struct err *e)
     struct flits *g = (struct flits *)(void *)fabric_create(n, sizeof *g, flits_look, e);
     if (!g) return NULL;
     g->fabric.occupied = packet_occupied;
+    n->hop_bytes += sizeof(struct leg);
+    n->resource_bytes = size_product((size_t)g->fabric.nchannel,
+                                     sizeof(struct vc) + (size_t)g->fabric.buffer * sizeof(sim_ps));
     g->crossing = TAKE(n->arena, n->nresource, struct crossing);
     g->free_worm = TAKE(n->arena, (n->topology->max_hops + 2) / WORM_STEP + 1, struct worm *);
     return &g->fabric;

@@ -431,6 +431,7 @@ static struct fabric *train_create(struct net *n, struct err *e)
     struct train *g = (struct train *)(void *)fabric_create(n, sizeof *g, train_look, e);
     if (!g) return NULL;
     g->fabric.occupied = train_occupied;
+    n->hop_bytes += sizeof(struct stage) + sizeof(struct run);
     g->line = TAKE(n->arena, n->nresource, struct line);
     g->free_worm = TAKE(n->arena, (n->topology->max_hops + 2) / WORM_STEP + 1, struct worm *);
     return &g->fabric;

@@ -76,6 +76,9 @@ struct net {
     sim_ps *wire;            /* (nlink) what cables add to the hop latency; NULL: nothing */
     struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
     struct net_hold *hold;  /* (nresource) with path */
+    /* host memory of a message on its way, of each resource on it, and of a resource from its first
+     * use on (net_memory) [B] */
+    size_t message_bytes, hop_bytes, resource_bytes;
     void *state;            /* of the level */
 };
 

@@ -54,6 +54,7 @@ static bool link_create(struct net *n, struct err *e)
                       ? g->free
                       : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
     n->state = g;
+    n->message_bytes = sizeof(struct flight) + (n->routing ? sizeof(struct route) : 0);
     sim_foresee(n->sim, head_arrives, head_early, 1);
     return true;
 }

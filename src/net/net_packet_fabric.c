@@ -77,6 +77,8 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     struct fabric *f = arena_take(n->arena, size);
     f->net = n;
     f->look = look;
+    n->message_bytes = sizeof(struct flight);
+    n->hop_bytes = sizeof(struct pass);
     f->nprocessor = n->topology->spec->processors_per_node;
     f->nchannel = w->virtual_channels;
     /* Too few channels for the topology's deadlock classes: one class, and deadlock becomes

@@ -195,6 +195,10 @@ static struct routers *routers_create(struct net *n, bool whole, struct err *e)
     /* A buffer, and what may be known to come. */
     while (g->ring + 1 < g->fabric.buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
     g->fabric.occupied = router_occupied;
+    n->message_bytes += sizeof(struct worm);
+    n->hop_bytes = sizeof(struct leg);
+    const size_t places = (size_t)(g->ring + 1) * sizeof(struct stay);
+    n->resource_bytes = size_product(g->nchannel, sizeof(struct lane) + places);
     g->port = TAKE(n->arena, n->nresource, struct port);
     g->router = TAKE(n->arena, n->topology->nrouter, struct router);
     g->sending = TAKE(n->arena, n->nnode, struct leg *);

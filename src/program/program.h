@@ -69,8 +69,8 @@ struct program_run {
 /* What a run will cost, known before it runs (mimdsim explain). */
 struct program_estimate {
     double messages, bytes, flops; /* sent and computed, all ranks */
-    double rank_bytes;      /* host memory per rank, workspace and messages in flight */
-    double scene_bytes;     /* host memory of the model, its references and serial codes: at most */
+    double rank_bytes;      /* host memory that a rank works in */
+    double model_bytes, reference_bytes; /* of the model; of serial codes, after the ranks */
 };
 
 /* What a run leaves out. */

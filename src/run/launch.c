@@ -47,12 +47,14 @@ static void program(struct comm *c, void *context)
     else l->rank->run(c, l->job, workspace);
 }
 
+enum { PAGE = 4096 };
+
 /* Whether stack and workspace of every rank share a page: what fiber.c saves above the first frame,
  * and frames of this file, are part of the depth. A stack that somebody wants smaller than usual is
  * left to the program. */
 static bool shares_page(const struct program_run *r, const struct world_load *load)
 {
-    enum { PAGE = 4096, LEAST_STACK = 2 * PAGE };
+    enum { LEAST_STACK = 2 * PAGE };
     int first, end;
     if (r->rank->depth == 0 || (load->stack_bytes > 0 && load->stack_bytes < LEAST_STACK))
         return false;
@@ -126,6 +128,16 @@ static int64_t working_set(const struct program_run *r)
         if (own > most) most = own;
     }
     return (int64_t)most;
+}
+
+/* Calls of built-in programs hardly go deeper than a page (docs/scale.md). */
+double launch_memory(const struct program_run *r, double *workspaces)
+{
+    const struct world_load load = load_of(r, -1);
+    *workspaces = 0;
+    if (!shares_page(r, &load))
+        for (int i = 0; i < r->spec.nrank; i++) *workspaces += (double)workspace_of(r, NULL, i);
+    return (double)PAGE * r->spec.nrank;
 }
 
 const char *launch_ordered(const struct program_run *r, const struct machine_spec *m,

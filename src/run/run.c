@@ -173,11 +173,9 @@ static void describe(void *context, char *buffer, int size)
              (unsigned long long)s->seed, s->rep);
 }
 
-/* What the stack of a rank is assumed to touch: two pages; one at least. RANK_BYTES: the structs of
- * a rank and of its messages. */
-enum { STACK_PAGES_BYTES = 2 * 4096, STACK_LEAST_BYTES = 4096, RANK_BYTES = 1400 };
+/* Stacks of ranks are memory that is certain to be used, a page each at least. */
+enum { STACK_LEAST_BYTES = 4096 };
 
-/* Stacks of ranks are memory that is certain to be used. */
 static bool ranks_fit(const struct run_spec *spec, const struct run_order *order, struct err *e)
 {
     char what[64];
@@ -265,80 +263,4 @@ bool run_fits(const struct machine_spec *m, int nrank, const struct job_set *job
               struct err *e)
 {
     return world_fits(m, nrank, jobs, work, e);
-}
-
-/* Before it runs the memory of a built-in program is an estimate. */
-static void tell_node(const struct run_spec *spec, const struct program_estimate *k, char *text,
-                      int size)
-{
-    struct node_use use;
-    struct err ignored;
-    err_clear(&ignored);
-    const double own = isfinite(k->rank_bytes) ? k->rank_bytes : 0;
-    const int64_t set = spec->kernel.own ? spec->program.working_set : (int64_t)own;
-    text[0] = '\0';
-    if (node_use_make(&spec->machine, spec->nrank, set, &use, &ignored))
-        node_use_tell(&spec->machine.node, &use, text, size);
-}
-
-/* What simulating the others takes: their programs run as well. */
-static bool add_neighbours(const struct run_spec *spec, struct run_estimate *out, struct err *e)
-{
-    const struct job_set *set = spec->jobs;
-    /* Whichever of them is looked at, all are simulated on one thread. */
-    out->alone = "several jobs share the machine";
-    out->threads = 1;
-    for (int i = 0; i < set->n; i++) {
-        if (i + 1 == spec->job.number || set->idle[i]) continue;
-        /* A member of a set has no machine of its own. */
-        struct run_spec other = *set->job[i];
-        struct run_estimate more;
-        other.machine = spec->machine;
-        if (!run_explain(&other, &more, e)) return false;
-        out->host_s += more.host_s;
-        out->host_bytes += more.host_bytes;
-    }
-    return true;
-}
-
-bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
-{
-    memset(out, 0, sizeof *out);
-    struct arena *own = arena_create();
-    struct run_cache *cache = run_cache_create();
-    struct program_run r;
-    const bool ok = run_open(spec, NULL, cache, own, &r, e);
-    if (ok) {
-        /* Counts by the program, then host time and memory from measured costs per count. */
-        struct program_estimate k = {0};
-        r.type->estimate(&r, &k);
-        out->nbody = r.nbody;
-        out->nu = r.nu;
-        out->metre = r.metre, out->kilogram = r.kilogram, out->second = r.second;
-        out->messages = k.messages;
-        out->bytes = k.bytes;
-        out->flops = k.flops;
-        out->nomission = omission_listing(&r, out->omission);
-        const struct machine_spec machine = omission_machine(spec, r.order.keep);
-        const struct record_spec record = omission_record(spec, r.order.keep);
-        const int64_t largest = omission_largest_message(&r);
-        out->ordered = launch_ordered(&r, &machine, &record, largest);
-        out->alone = launch_alone(&r, &machine, &record, largest);
-        out->threads = out->alone ? 1
-                                  : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank,
-                                                   out->ordered != NULL);
-        out->nunused = r.type->unused ? r.type->unused(&r, out->unused) : 0;
-        /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a
-         * rank's own. */
-        const double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
-        out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
-        tell_node(spec, &k, out->node, sizeof out->node);
-        out->host_bytes =
-            spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + RANK_BYTES) + k.scene_bytes;
-    }
-    run_close(&r);
-    run_cache_destroy(cache);
-    arena_destroy(own);
-    if (ok && spec->jobs) return add_neighbours(spec, out, e);
-    return ok;
 }

@@ -68,6 +68,7 @@ struct run_estimate {
     char node[320];    /* what its computing costs by (node_use_tell); "": nothing to be told */
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
+    double again_bytes; /* and more, where its answer asks for another attempt */
     int threads;       /* of the host, on all of its processors */
     const char *alone; /* why one, whatever is asked for; NULL: several may run it (world_alone) */
     const char *ordered; /* why by windows of simulated time; NULL: in any order (world_ordered) */
@@ -77,8 +78,12 @@ struct run_estimate {
     const char *unused[2];
 };
 
-/* run_explain: estimate one run without making it. Returns false as run_one. */
-bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e);
+/* run_explain: estimate one run without making it. `work`: as of world_fits, at first
+ * RUN_EXPLAIN_WORK for a plan, or a run alone; networks beyond it are left out of the memory.
+ * Returns false as run_one. */
+enum { RUN_EXPLAIN_WORK = 1 << 25 };
+bool run_explain(const struct run_spec *spec, int64_t *work, struct run_estimate *out,
+                 struct err *e);
 
 /* run_done_fn: called in plan order with each result; return false to stop the campaign. */
 typedef bool run_done_fn(void *context, const struct run_spec *spec,

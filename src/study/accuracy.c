@@ -144,8 +144,9 @@ static bool begin(struct accuracy_report *r, const struct run_spec *spec, int ns
     if (nspec == 0) return err_set(e, ERR_CONFIG, "the scenario has no runs");
     text_copy(r->scenario, sizeof r->scenario, spec[0].scenario);
     *size = TAKE(a, nspec, struct run_estimate);
+    int64_t work = RUN_EXPLAIN_WORK;
     for (int i = 0; i < nspec; i++)
-        if (!run_explain(&spec[i], &(*size)[i], e)) return false;
+        if (!run_explain(&spec[i], &work, &(*size)[i], e)) return false;
     return true;
 }
 

@@ -88,6 +88,12 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
 bool world_fits(const struct machine_spec *m, int nrank, const struct job_set *jobs, int64_t *work,
                 struct err *e);
 
+/* world_memory: host memory that a run takes beside its ranks (topology, places, network),
+ * estimated for `messages` in all [B]. `links`: their loads are recorded. `work` as of world_fits:
+ * what goes beyond is not built, and 0 is told, as of a machine that cannot hold the ranks. */
+double world_memory(const struct machine_spec *m, int nrank, double messages, bool links,
+                    int64_t *work);
+
 /* world_part: the ranks *first .. *end - 1 that this process runs: all, unless load->hosts. Only
  * process 0 then gets the whole result; the others' has the status and their own ranks' part. */
 void world_part(const struct world_load *load, int *first, int *end);

@@ -179,3 +179,28 @@ many() { printf '%s\n' 'schema_version: 1' "$@" >many.yaml; }
     fails_with 78 timeout 600 "$MIMDSIM" check many.yaml
     stderr_says 'many.yaml: the lists of all runs, and the jobs beside each, take more than 64 MiB of text'
 }
+
+# takes_as_told ARGUMENTS...: a run with them takes what explain tells, within a factor of 1.5.
+takes_as_told() {
+    local told used
+    rm -f told.db
+    works mimdsim explain "$@" --json
+    told=$(python3 -c 'import json, sys; print(max(r["host_bytes"] for r in json.load(sys.stdin)["runs"]))' <<<"$output")
+    works mimdsim run "$@" -o told.db --quiet
+    used=$(sql told.db 'SELECT max(host_peak_bytes) FROM run')
+    echo "$*: told $told B, used $used B"
+    awk -v told="$told" -v used="$used" 'BEGIN { exit !(told < 1.5 * used && used < 1.5 * told) }'
+}
+
+@test "a run takes the memory that explain tells: ranks, bodies, and a network that is hardly used, or all of it" {
+    sanitized && skip 'sanitizers take memory of their own'
+    local level
+    for level in loggp packet; do
+        takes_as_told speedup-t3e --set n=1024 --set machine.topology.dims='[8, 16, 8]' --set level=$level
+    done
+    takes_as_told speedup-t3e --set n=8192 --set ranks=16 --set level=loggp
+    takes_as_told speedup-t3e --set n=8192 --set ranks=1024 --set machine.topology.dims='[16, 8, 8]' --set kernel=inverse
+    takes_as_told speedup-t3e --set n=256 --set level=link --set machine.topology.dims='[128, 128, 64]'
+    takes_as_told speedup-t3e --set n=256 --set level=link --set machine.topology.dims='[128, 128, 64]' \
+        --set machine.placement.kind=random
+}

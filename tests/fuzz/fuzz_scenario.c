@@ -25,7 +25,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             CHECK(run->refused || run->nrank <= machine_spec_processors(&run->machine));
         }
         struct run_estimate estimate;
-        if (!run_explain(&p.run[0], &estimate, &e)) fuzz_refused(&e);
+        int64_t work = RUN_EXPLAIN_WORK;
+        if (!run_explain(&p.run[0], &work, &estimate, &e)) fuzz_refused(&e);
     } else fuzz_refused(&e);
     plan_free(&p);
     return 0;

@@ -128,13 +128,14 @@ static void what_has_no_program_is_refused(void **state)
         spec.kernel.own = own == 1;
         const char *part =
             own ? "program 'dynamics' is not at hand" : "no kernel is called 'nobody'";
+        int64_t work = RUN_EXPLAIN_WORK;
         for (int way = 0; way < 3; way++) {
             err_clear(&e);
             if (way == 0) {
                 assert_false(run_open(&spec, NULL, cache, a, &r, &e));
                 run_close(&r);
             } else if (way == 1) assert_false(run_one(&spec, a, &out, &e));
-            else assert_false(run_explain(&spec, &estimate, &e));
+            else assert_false(run_explain(&spec, &work, &estimate, &e));
             assert_int_equal(e.kind, ERR_CONFIG);
             if (strstr(e.text, part) == NULL) fail_msg("'%s' is not in '%s'", part, e.text);
         }

@@ -346,7 +346,8 @@ static void estimates_are_within_a_fifth_of_what_is_counted(void **unused)
         struct run_estimate x;
         struct err e;
         err_clear(&e);
-        assert_true(run_explain(&spec, &x, &e));
+        int64_t work = RUN_EXPLAIN_WORK;
+        assert_true(run_explain(&spec, &work, &x, &e));
         double flops = 0;
         for (int k = 0; k < r.nrank * r.nstage; k++) flops += (double)r.stage[k].work.flop;
         near("messages", x.messages, (double)r.messages);
