@@ -70,17 +70,27 @@ static size_t workspace_of(const struct program_run *r, const struct tape *tape,
     return tape ? tape_workspace(tape, i) : r->rank->workspace_bytes(r->job, i);
 }
 
+/* What the ranks of this process work in, all together. */
+static size_t workspaces_sum(const struct program_run *r, const struct world_load *load,
+                             const struct tape *tape)
+{
+    size_t sum = 0;
+    int first, end;
+    world_part(load, &first, &end);
+    for (int i = first; i < end; i++) sum = size_sum(sum, workspace_of(r, tape, i));
+    return sum;
+}
+
 /* Taken one by one: all of it will be touched, so the arena may use large pages. Nothing is taken
  * before the sum is known to be there. NULL: with the error set. */
 static char **make_workspaces(const struct program_run *r, const struct world_load *load,
                               const struct tape *tape, struct arena *a, struct err *e)
 {
     const struct tape *taped = tape && tape_whole(tape) ? tape : NULL;
-    size_t sum = 0;
+    const size_t sum = workspaces_sum(r, load, taped);
     int first, end;
     char what[64];
     world_part(load, &first, &end);
-    for (int i = first; i < end; i++) sum = size_sum(sum, workspace_of(r, taped, i));
     snprintf(what, sizeof what, "what %d ranks of '%s' work in", end - first, r->type->name);
     if (!size_in_memory(sum, "", 0, what, e)) return NULL;
     char **w = TAKE(a, r->spec.nrank, char *);
@@ -134,9 +144,7 @@ static int64_t working_set(const struct program_run *r)
 double launch_memory(const struct program_run *r, double *workspaces)
 {
     const struct world_load load = load_of(r, -1);
-    *workspaces = 0;
-    if (!shares_page(r, &load))
-        for (int i = 0; i < r->spec.nrank; i++) *workspaces += (double)workspace_of(r, NULL, i);
+    *workspaces = shares_page(r, &load) ? 0 : (double)workspaces_sum(r, &load, NULL);
     return (double)PAGE * r->spec.nrank;
 }
 
