@@ -191,7 +191,6 @@ static void replay_make(struct replay *r, struct arena *a)
     r->arena = a;
     r->ready = TAKE(a, n + 1, sim_ps);
     for (int m = 0; m < n; m++) r->ready[m] = q->time[m];
-    result_clear(r);
     dependents_make(r, a);
     initial_make(r, a);
 }
@@ -217,6 +216,7 @@ static bool replay_clocked(const struct replay *r, bool want_links)
                                       .time = q->time,
                                       .order = r->initial,
                                       .stop = q->stop};
+    result_clear(r);
     struct clocked_result c = {.arrival = out->arrival, .injected = out->injected};
     if (!net_clocked(r->net, &list, &c)) return false;
     out->arrived = c.arrived;
@@ -233,6 +233,8 @@ static bool replay_clocked(const struct replay *r, bool want_links)
 static void replay_run(struct replay *r, struct arena *a)
 {
     struct traffic_result *out = r->result;
+    /* Also of a list that was given up in the middle of its cycles. */
+    result_clear(r);
     if (r->ninitial > 0) start_at(r, r->initial[r->next_initial++]);
     bool stopped = false;
     while (!(stopped = is_over(r)) && sim_step(r->sim)) continue;
@@ -270,12 +272,11 @@ bool traffic_run(const struct traffic *q, const struct machine_spec *m, const st
     r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
     if (r.net && !all_taken(r.net, q, e)) r.net = NULL;
     if (r.net) {
-        /* Messages that wait for others start in the order of events. */
         replay_make(&r, a);
         if (!replay_clocked(&r, want_links)) {
             r.ahead = !q->singly && net_gather(r.net);
+            /* Messages that wait for others start in the order of events. */
             r.gathers = r.ahead && !q->dep_first;
-            result_clear(&r);
             replay_run(&r, a);
         }
     }

@@ -97,6 +97,17 @@ static struct machine_spec draw_machine(struct random *r, const struct topology_
     return m;
 }
 
+/* n messages without dependencies. */
+static struct traffic list_of(int n, struct arena *a)
+{
+    return (struct traffic){.nmessage = n,
+                            .src = TAKE(a, n, int),
+                            .dst = TAKE(a, n, int),
+                            .bytes = TAKE(a, n, int64_t),
+                            .time = TAKE(a, n, sim_ps),
+                            .delay = TAKE(a, n, sim_ps)};
+}
+
 /* A list of messages; times on the cycle, or anywhere; some wait for others. */
 static void draw_list(struct random *r, int nnode, struct arena *a, struct traffic *q)
 {
@@ -104,12 +115,7 @@ static void draw_list(struct random *r, int nnode, struct arena *a, struct traff
               cycle = below(r, 4) ? 1000 : 1;
     const bool waits = below(r, 3) == 0;
     const int longest = 1 + below(r, 20);
-    *q = (struct traffic){.nmessage = n,
-                          .src = TAKE(a, n, int),
-                          .dst = TAKE(a, n, int),
-                          .bytes = TAKE(a, n, int64_t),
-                          .time = TAKE(a, n, sim_ps),
-                          .delay = TAKE(a, n, sim_ps)};
+    *q = list_of(n, a);
     if (waits) q->dep_first = TAKE(a, n + 1, int);
     q->dep = TAKE(a, n, int);
     int ndep = 0;
@@ -357,13 +363,8 @@ static bool far_list_agrees(const struct machine_spec *m, int n, sim_ps first, s
     struct arena *a = arena_create();
     struct err e;
     err_clear(&e);
-    struct traffic q = {.nmessage = n,
-                        .src = TAKE(a, n, int),
-                        .dst = TAKE(a, n, int),
-                        .bytes = TAKE(a, n, int64_t),
-                        .time = TAKE(a, n, sim_ps),
-                        .delay = TAKE(a, n, sim_ps),
-                        .stop = stop};
+    struct traffic q = list_of(n, a);
+    q.stop = stop;
     for (int i = 0; i < n; i++) {
         q.src[i] = i % 9;
         q.dst[i] = (i * 5 + 1) % 9;
