@@ -277,7 +277,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     else
         printf("\nestimated: %.2f s of one processor, %.0f MB\n", t.host_s, t.host_bytes / 1e6);
     if (t.most_bytes > 1.05 * t.host_bytes)
-        printf("where the answer of a run asks for refinement, %.0f MB\n", t.most_bytes / 1e6);
+        printf("if an answer needs refinement: %.0f MB\n", t.most_bytes / 1e6);
     print_recording(p, r);
     print_threads(p, r);
     print_nodes(p, r);
@@ -355,7 +355,7 @@ static const struct column planned_column[] = {
     {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
     {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
     {"host_bytes_again", COLUMN_REAL, ESTIMATE(again_bytes),
-     .doc = "more memory, where its answer asks for refinement"},
+     .doc = "more memory, if its answer needs refinement"},
     {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},
     {"host_threads", COLUMN_INT, ESTIMATE(threads),
      .doc = "that run its ranks on this computer, with --threads auto"},

@@ -180,12 +180,19 @@ many() { printf '%s\n' 'schema_version: 1' "$@" >many.yaml; }
     stderr_says 'many.yaml: the lists of all runs, and the jobs beside each, take more than 64 MiB of text'
 }
 
+# told COLUMN ARGUMENTS...: what explain tells in it of the largest run [B].
+told() {
+    local column=$1
+    shift
+    works mimdsim explain "$@" --json >&2 # stdout is the answer
+    python3 -c 'import json, sys; print(round(max(r[sys.argv[1]] for r in json.load(sys.stdin)["runs"])))' "$column" <<<"$output"
+}
+
 # takes_as_told ARGUMENTS...: a run with them takes what explain tells, within a factor of 1.5.
 takes_as_told() {
     local told used
     rm -f told.db
-    works mimdsim explain "$@" --json
-    told=$(python3 -c 'import json, sys; print(max(r["host_bytes"] for r in json.load(sys.stdin)["runs"]))' <<<"$output")
+    told=$(told host_bytes "$@")
     works mimdsim run "$@" -o told.db --quiet
     used=$(sql told.db 'SELECT max(host_peak_bytes) FROM run')
     echo "$*: told $told B, used $used B"
@@ -203,4 +210,15 @@ takes_as_told() {
     takes_as_told speedup-t3e --set n=256 --set level=link --set machine.topology.dims='[128, 128, 64]'
     takes_as_told speedup-t3e --set n=256 --set level=link --set machine.topology.dims='[128, 128, 64]' \
         --set machine.placement.kind=random
+}
+
+@test "explain tells what another attempt takes more: as much as asking for its refinement does" {
+    local first more run=(speedup-t3e --set level=loggp --set n=8192 --set ranks=64)
+    first=$(told host_bytes "${run[@]}") more=$(told host_bytes_again "${run[@]}")
+    [ "$more" -gt 1000000 ]
+    [ "$(told host_bytes "${run[@]}" --set kernel.inner_refinements=1)" -eq $((first + more)) ]
+    # inverse dynamics solves nothing that could need it
+    [ "$(told host_bytes_again "${run[@]}" --set kernel=inverse)" -eq 0 ]
+    works mimdsim explain "${run[@]}"
+    stdout_says 'if an answer needs refinement: 126 MB'
 }
