@@ -15,7 +15,10 @@ subline = "lines: mean, with its 95 % confidence interval;  dashed: 99th percent
 of(k, v) = column("curve") == k ? v : NaN
 # of an interval that a logarithmic axis cannot hold, the part that it can
 from(v) = v > lowest*0.7 ? v : lowest*0.7
-rows = (last + 1)/2
+# two columns of titles where both have room
+longest = 0
+do for [k=1:last] { longest = (n = strlen(name[k]) + (sat[k] > 0 ? 38 : 0), n > longest ? n : longest) }
+rows = longest > 52 ? last : (last + 1)/2
 
 do for [format in formats] {
     high_px = 512.0 + 20*rows

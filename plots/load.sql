@@ -12,9 +12,10 @@ place AS (
            iif(d.machine OR NOT (d.routing OR d.level OR d.size), s.machine || ' ', '') || iif(d.routing, s.routing || ' ', '')
            || iif(d.level, s.level || ' ', '') || iif(d.size, s.message_bytes || ' B ', '') AS name
     FROM shown s, differ d)
-SELECT p.curve, trim(p.name) AS name, x.offered, x.accepted, x.mean_ps / 1e3 AS mean_ns, x.half_ps / 1e3 AS half_ns,
+-- gnuplot ends a quoted text at its first comma
+SELECT p.curve, replace(trim(p.name), ',', '‚') AS name, x.offered, x.accepted, x.mean_ps / 1e3 AS mean_ns, x.half_ps / 1e3 AS half_ns,
        x.p99_ps / 1e3 AS p99_ns, x.status, p.empty_ps / 1e3 AS empty_ns, p.bound, p.saturation, p.saturation_low AS low,
-       p.saturation_high AS high, ?1 AS traffic
+       p.saturation_high AS high, replace(?1, ',', '‚') AS traffic
 FROM place p JOIN load_point x ON x.series = p.series
 WHERE p.curve <= 6
 ORDER BY p.curve, x.offered, x.probe;

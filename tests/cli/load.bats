@@ -91,6 +91,19 @@ setup_file() { :; }
     works grep -q "load-uniform" -r told
 }
 
+@test "a figure names what was changed of a machine, long names below each other" {
+    small_mesh "4, 4"
+    local buffer places
+    for buffer in 32 64; do
+        works mimdsim load small.yaml --rates 0.1 --no-saturation -q --set machine.network.buffer=$buffer \
+            --set machine.network.credit_latency='3 ns' --set machine.network.hop_latency='5 ns'
+        grep -q "network.buffer=$buffer" figures/load-uniform.svg
+    done
+    # the titles begin at one place
+    places=$(grep -B1 'network.buffer=' figures/load-uniform.svg | grep -o 'translate([0-9.]*' | sort -u | wc -l)
+    [ "$places" -eq 1 ]
+}
+
 @test "the messages of a stored run are traffic, at any speed and on any machine" {
     small_mesh "4, 4"
     works mimdsim run speedup-t3e --set n=32 --set ranks=16 --set record.spans=true -q -o program.db
