@@ -189,6 +189,7 @@ scenario() {
 }
 
 @test "the report tells what the three commands stored, from the database alone" {
+    plain_build_only
     scenario
     works mimdsim accuracy small.yaml --quiet
     works mimdsim stability small.yaml --quiet

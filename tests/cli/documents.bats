@@ -17,12 +17,15 @@ not_run='[A-Z]{4,}|\.\.\.|\[[A-Z]|\./program|^mimdsim (paper|stability|accuracy|
 # look_up COMMAND: its verb exists and has its options.
 look_up() {
     local verb options
-    verb=$(printf '%s\n' "$1" | cut -d' ' -f2)
-    works mimdsim "$verb" --help
-    printf '%s\n' "$output" >help
+    verb=${1#* }
+    verb=${verb%% *}
+    if [ ! -e "help.$verb" ]; then
+        works mimdsim "$verb" --help
+        printf '%s\n' "$output" >"help.$verb"
+    fi
     options=$(printf '%s\n' "$1" | sed -E "s/\"[^\"]*\"//g; s/'[^']*'//g" | grep -oE ' --[a-z][a-z-]*' || true)
     for option in $options; do
-        grep -q -e "$option" help || { echo "$verb has no $option: $1"; return 1; }
+        grep -q -e "$option" "help.$verb" || { echo "$verb has no $option: $1"; return 1; }
     done
 }
 

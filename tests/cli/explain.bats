@@ -75,6 +75,7 @@ answer() { sqlite3 toy.db "SELECT $1 FROM explain_answer WHERE subject = 'T1' AN
 }
 
 @test "the same answers on any number of workers, and after being killed" {
+    plain_build_only
     toy 'S is at least 0.3' 'speedup - 0.3'
     cp toy.db second.db; cp toy.db third.db
     works mimdsim claims --explain toy.db --quiet --jobs 1

@@ -28,6 +28,9 @@ mimdsim() { "$MIMDSIM" "$@"; }
 # sanitized: the program was built with sanitizers: it is slow, and its memory is not its own.
 sanitized() { mimdsim --version | grep -q 'with sanitizers'; }
 
+# plain_build_only: skips a long test under sanitizers, where shorter ones take the same ways through the program.
+plain_build_only() { ! sanitized || skip 'long: by plain builds alone'; }
+
 # show: what the last command said, for the log of a failed test.
 show() { printf '%s\n' "status: $status" "stdout: $output" "stderr: $stderr"; }
 
