@@ -5,6 +5,8 @@
  * ever. */
 #include "hosts/hosts_copy.h"
 
+#include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -91,4 +93,41 @@ bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n)
 bool hosts_all_largest(const struct hosts *h, int tag, int64_t *value, int n)
 {
     return reduce_all(h, tag, HOSTS_LARGEST, value, n);
+}
+
+/* What a process says of itself, and process 0 of all. */
+struct verdict {
+    int32_t kind; /* enum err_kind; ERR_NONE: it can go on */
+    char text[sizeof((struct err *)0)->text];
+};
+
+/* The first process that cannot decides: what is wrong with all of them is told once. */
+static bool first_reason(const struct hosts *h, int tag, struct verdict *v)
+{
+    for (int i = 1; i < h->size; i++) {
+        struct verdict other;
+        if (!hosts_copy_in(h, i, tag, &other, sizeof other)) return false;
+        if (v->kind != ERR_NONE || other.kind == ERR_NONE) continue;
+        v->kind = other.kind;
+        snprintf(v->text, sizeof v->text, "process %d of the job: %.*s", i,
+                 (int)sizeof other.text - 40, other.text);
+    }
+    return true;
+}
+
+/* Every process gives its verdict before it hears that of all: none is left waiting for a message
+ * of one that has turned back. */
+bool hosts_agree(const struct hosts *h, int tag, bool ok, struct err *e)
+{
+    struct verdict v = {.kind = ok ? ERR_NONE : (int32_t)e->kind};
+    if (!ok) memcpy(v.text, e->text, sizeof v.text);
+    const bool heard = (h->rank == 0 ? first_reason(h, tag, &v)
+                                     : hosts_copy_out(h, 0, tag, &v, sizeof v)) &&
+                       hosts_tell(h, tag, &v, sizeof v);
+    if (heard && v.kind == ERR_NONE) return true;
+    /* Process 0 keeps the place in a file that its own reason has. */
+    if (h->rank == 0 && !ok) return false;
+    err_clear(e);
+    return heard ? err_set(e, (enum err_kind)v.kind, "%s", v.text)
+                 : err_set(e, ERR_INTERNAL, "a process of the job has ended, or does not answer");
 }

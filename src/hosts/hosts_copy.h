@@ -20,4 +20,10 @@ bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n);
 bool hosts_all_sum(const struct hosts *h, int tag, int64_t *value, int n);
 bool hosts_all_largest(const struct hosts *h, int tag, int64_t *value, int n);
 
+/* hosts_agree: whether all processes can go on; called by all. `ok`: this one can, else *e says why
+ * it cannot. False: one cannot, and *e tells on all of them why, in the words of the first of them
+ * (in front of those of another process than 0 stands its number), or ERR_INTERNAL where one does
+ * not answer. */
+bool hosts_agree(const struct hosts *h, int tag, bool ok, struct err *e);
+
 #endif

@@ -64,6 +64,8 @@ bool loader_price_blocks(struct loader_template *t, const struct node_cost *c, d
         /* Sections may lie in the file and yet outside of what is loaded. */
         if (entry == NULL)
             return err_set(e, ERR_DATA, "the table of basic blocks lies outside of the file");
+        if ((uintptr_t)entry % _Alignof(struct block_entry) != 0)
+            return err_set(e, ERR_DATA, "the table of basic blocks is not aligned to 4 bytes");
         const struct block_table table = {entry, bytes / sizeof(struct block_entry), place};
         if (!block_costs_patch(&table, at_place, t, c, factor, e)) return false;
     }

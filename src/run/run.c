@@ -186,8 +186,8 @@ static bool ranks_fit(const struct run_spec *spec, const struct run_order *order
 
 /* A divided run that processes cannot share, because things must happen in order, is opened again
  * as a whole; all of them come to the same verdict. */
-static bool open_shared(const struct run_spec *spec, const struct run_order *order,
-                        struct run_cache *cache, struct program_run *r, struct err *e)
+static bool open_divided(const struct run_spec *spec, const struct run_order *order,
+                         struct run_cache *cache, struct program_run *r, struct err *e)
 {
     if (!run_open(spec, order, cache, cache->own, r, e)) return false;
     if (!r->divided) return true;
@@ -198,6 +198,15 @@ static bool open_shared(const struct run_spec *spec, const struct run_order *ord
     whole.whole = true;
     run_close(r);
     return run_open(spec, &whole, cache, cache->own, r, e);
+}
+
+/* What one process cannot open, none begins. */
+static bool open_shared(const struct run_spec *spec, const struct run_order *order,
+                        struct run_cache *cache, struct program_run *r, struct err *e)
+{
+    enum { TAG_OPENED = 410 };
+    const bool ok = ranks_fit(spec, order, e) && open_divided(spec, order, cache, r, e);
+    return order && order->hosts ? hosts_agree(order->hosts, TAG_OPENED, ok, e) : ok;
 }
 
 /* Of ranks that fail one is told, the first on one thread. Process 0 makes the run again, alone; it
@@ -229,7 +238,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order,
     struct arena *scratch = cache->scratch;
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
-    const bool ok = ranks_fit(spec, order, e) && open_shared(spec, order, cache, &r, e) &&
+    const bool ok = open_shared(spec, order, cache, &r, e) &&
                     run_attempts(&r, cache, a, out, e) && again_alone(spec, cache, &r, a, out, e);
     if (ok && (chief(&r) || r.divided)) {
         out->nomission = omission_listing(&r, out->omission);

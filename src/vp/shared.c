@@ -17,7 +17,8 @@
 #include "vp/team.h"
 
 enum tag {
-    TAG_END = 300,
+    TAG_BUILT = 299,
+    TAG_END,
     TAG_SIZES,
     TAG_TIMES,
     TAG_STAGES,
@@ -26,6 +27,11 @@ enum tag {
     TAG_OUTPUT,
     TAG_WAITING
 };
+
+bool shared_built(struct world *w, bool ok, struct err *e)
+{
+    return hosts_agree(w->load->hosts, TAG_BUILT, ok, e);
+}
 
 /* Sums decide, so that all processes come to the same end. */
 enum shared_end shared_end(struct world *w)

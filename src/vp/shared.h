@@ -17,6 +17,10 @@ struct published {
     int64_t n, room;
 };
 
+/* shared_built: whether all processes have what they need for their ranks, `ok` for this one; where
+ * one has not, no other waits for its messages, and *e is the reason on all (hosts_agree). */
+bool shared_built(struct world *w, bool ok, struct err *e);
+
 /* How a shared run has ended, the same on all processes; of more than one, the last. */
 enum shared_end { SHARED_FINISHED, SHARED_DEADLOCK, SHARED_FAILED, SHARED_BROKEN };
 

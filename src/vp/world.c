@@ -389,6 +389,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load,
     out->nrank = load->nrank;
     world_name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);
+    if (load->hosts) ok = shared_built(&w, ok, e);
     if (ok) run(&w, seed);
     path_log_destroy(w.path);
     stacks_leave(&w);

@@ -102,6 +102,24 @@ leaves_a_row() {
 @test "a process that dies leaves a row that says so, with Open MPI" { leaves_a_row openmpi; }
 @test "a process that dies leaves a row that says so, with MPICH" { leaves_a_row mpich; }
 
+# One process may take less memory than its part of a run needs. Nobody waits for it, and the next run is made.
+says_whose_memory() {
+    needs "$1"
+    sanitized && skip 'sanitizers take more address space than that'
+    scenario
+    printf '%s\n' '#!/bin/sh' '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" != 1 ] || ulimit -v 300000' 'exec "$@"' >limited
+    chmod +x limited
+    large=(--set level=loggp --set kernel=inverse --set machine.topology.dims='[32, 32, 16]' --spread mpi -q -o all.db)
+    fails_with 1 start "$1" 3 ./limited "$MIMDSIM" run t.yaml "${large[@]}" --set n=16384,64
+    stderr_says 'process 1 of the job: cannot reserve 1140850688 bytes of address space'
+    sql_is all.db "SELECT group_concat(status, ' ') FROM (SELECT status FROM run ORDER BY n)" 'ok failed'
+    # alone it ends with the status of refused memory
+    fails_with 71 start "$1" 3 ./limited "$MIMDSIM" run t.yaml "${large[@]}" --set n=16384
+}
+
+@test "a process without memory for its part is told with its reason, with Open MPI" { says_whose_memory openmpi; }
+@test "a process without memory for its part is told with its reason, with MPICH" { says_whose_memory mpich; }
+
 @test "--spread and what it does not go with" {
     scenario
     fails_with 64 mimdsim run t.yaml --spread pvm

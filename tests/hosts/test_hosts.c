@@ -5,6 +5,7 @@
 #include <setjmp.h>
 #include <cmocka.h>
 #include <limits.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 
 #include "../support/last_words.h"
 #include "../support/scratch.h"
+#include "../support/thread_hosts.h"
 #include "base/random.h"
 #include "hosts/hosts_copy.h"
 
@@ -215,6 +217,73 @@ static void sums_are_formed_on_the_first(void **state)
     assert_false(hosts_sum(&h, 8, (int64_t[1]){0}, 1));
 }
 
+/* --- a job of threads: all at once --- */
+
+struct agreeing {
+    struct hosts hosts;
+    pthread_t thread;
+    const char *reason; /* NULL: this process can go on */
+    bool agreed;
+    struct err e;
+};
+
+static void *agree(void *context)
+{
+    struct agreeing *p = context;
+    thread_hosts_join(p->hosts.rank);
+    err_clear(&p->e);
+    if (p->reason != NULL) err_set_at(&p->e, ERR_CONFIG, "t.yaml", 7, "%s", p->reason);
+    p->agreed = hosts_agree(&p->hosts, 9, p->reason == NULL, &p->e);
+    return NULL;
+}
+
+/* reason (4); what all must tell then, NULL: that they agree. */
+static void all_agree(const char *const reason[4], const char *said)
+{
+    struct agreeing member[4];
+    thread_hosts_begin();
+    for (int i = 0; i < 4; i++) {
+        member[i] = (struct agreeing){.hosts = {i, 4, &thread_hosts}, .reason = reason[i]};
+        assert_int_equal(pthread_create(&member[i].thread, NULL, agree, &member[i]), 0);
+    }
+    for (int i = 0; i < 4; i++) pthread_join(member[i].thread, NULL);
+    assert_int_equal(thread_hosts_end(), 0);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(member[i].agreed, said == NULL);
+        assert_int_equal(member[i].e.kind, said == NULL ? ERR_NONE : ERR_CONFIG);
+        if (said != NULL) assert_string_equal(member[i].e.text, said);
+    }
+    /* the place in a file stays where its reason is told */
+    if (reason[0] != NULL) assert_int_equal(member[0].e.line, 7);
+}
+
+static void what_one_cannot_none_begins(void **state)
+{
+    (void)state;
+    all_agree((const char *[]){NULL, NULL, NULL, NULL}, NULL);
+    all_agree((const char *[]){NULL, NULL, "no room", NULL}, "process 2 of the job: no room");
+    all_agree((const char *[]){NULL, "first", "second", NULL}, "process 1 of the job: first");
+    all_agree((const char *[]){"same", "same", "same", "same"}, "same");
+    char longest[sizeof((struct err *)0)->text], said[sizeof longest];
+    memset(longest, 'x', sizeof longest);
+    longest[sizeof longest - 1] = '\0';
+    snprintf(said, sizeof said, "process 3 of the job: %.*s", (int)sizeof longest - 40, longest);
+    all_agree((const char *[]){NULL, NULL, NULL, longest}, said);
+}
+
+/* A process that has gone: the first is told, and knows no more. */
+static void who_does_not_answer_breaks_it(void **state)
+{
+    (void)state;
+    struct err e;
+    err_clear(&e);
+    job.broken_look = true;
+    const struct hosts h = process(0);
+    assert_false(hosts_agree(&h, 9, true, &e));
+    assert_int_equal(e.kind, ERR_INTERNAL);
+    assert_string_equal(e.text, "a process of the job has ended, or does not answer");
+}
+
 static void sum_too_many(void)
 {
     int64_t value[17] = {0};
@@ -349,6 +418,8 @@ int main(int argc, char **argv)
         TEST(all_are_told_by_the_first),
         TEST(sums_are_formed_on_the_first),
         TEST(sums_have_their_limit),
+        TEST(what_one_cannot_none_begins),
+        TEST(who_does_not_answer_breaks_it),
         TEST(launchers_are_known_by_their_marks),
         TEST(modules_are_found_or_missed_with_the_reason),
     };
