@@ -206,6 +206,10 @@ static bool lanes_make(struct clocked *g, int32_t longest, int32_t gap)
                  places = size_product(lanes, (size_t)g->ring + 1);
     if (g->wheel >= MOST_WHEEL || !are_few(g, g->nport, slots + places)) return false;
     g->slot = TAKE(a, slots, uint64_t);
+    for (int r = 0; r < g->nrouter; r++) {
+        g->router[r].slot = g->slot + r / CLOCKED_WORD;
+        g->router[r].bit = UINT64_C(1) << r % CLOCKED_WORD;
+    }
     g->again = TAKE(a, g->router_words, uint64_t);
     g->stay = TAKE(a, places, union clocked_stay);
     g->option = TAKE(a, size_product(lanes, CLOCKED_OPTIONS), struct route_option);
@@ -231,7 +235,13 @@ static void start(struct clocked *g, int m, int32_t now)
         return;
     }
     z->front = z->back = m;
-    clocked_wake_source(g, node, clocked_later(now, z->free));
+    if (z->sending || z->free > now) {
+        clocked_wake_source(g, node, clocked_later(now, z->free));
+        return;
+    }
+    z->wake = now;
+    clocked_source_look(g, node, now);
+    g->sources = true;
 }
 
 /* An event of net_router_gather.c, counted and mixed into the digest as that one would be. */
@@ -246,7 +256,7 @@ static void count(struct clocked *g, int32_t now, unsigned lane, int64_t key)
 /* Cycle g->now, if anything can happen in it. */
 static inline void cycle(struct clocked *g)
 {
-    uint64_t *slot = &g->slot[(size_t)(g->now & g->wheel) << g->word_shift], any = 0;
+    uint64_t *slot = &g->slot[(size_t)(g->now & g->wheel) << g->word_shift], any = g->sources;
     for (int w = 0; w < g->words; w++) any |= slot[w];
     if (!any) return;
     count(g, g->now, NET_LANE_ARBITRATE, 0);

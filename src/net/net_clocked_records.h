@@ -48,18 +48,18 @@ struct clocked_lane {
     _Alignas(ROUTER_LINE) int32_t clear; /* CLOCKED_NEVER: it is not, or that is not known */
     int32_t free, left, in, out, due;
     int32_t nleft; /* packets that left since it was clear */
+    uint16_t port;
+    uint8_t other; /* output of the second of several ways */
     struct clocked_leg *front, *back;
     struct clocked_port *way; /* its first or only way on */
     struct clocked_head head;
     bool owned, starved;
     uint8_t accept, grant;
-    uint8_t other; /* output of the second of several ways */
-    uint16_t port;
 };
 
 /* A link, or a node's way in or out (struct port). */
 struct clocked_port {
-    struct clocked_lane *lane;
+    _Alignas(ROUTER_LINE) struct clocked_lane *lane;
     int32_t passed, free;
     int32_t held; /* flits in its lanes */
     int32_t row;  /* of `to` in the table */
@@ -71,12 +71,13 @@ struct clocked_port {
 };
 
 struct clocked_router {
-    uint64_t busy;             /* lanes that have a front */
+    _Alignas(ROUTER_LINE) uint64_t busy; /* lanes that have a front */
     struct clocked_lane *lane; /* its first ones */
     struct clocked_port *port;
     uint64_t lanes_tried; /* in an allocation, */
     int32_t tried, again; /* in which cycle; when they come back */
     int32_t wake;         /* time of its next look */
+    uint64_t bit, *slot;  /* in the word of each slot; that of the first one */
 };
 
 struct clocked_source {

@@ -19,13 +19,11 @@ static inline void clocked_wake(struct clocked *g, int r, int32_t at)
     struct clocked_router *o = &g->router[r];
     if (o->wake <= at) return;
     o->wake = at;
-    const unsigned i = (unsigned)r, w = i / CLOCKED_WORD;
-    const uint64_t bit = UINT64_C(1) << i % CLOCKED_WORD;
     if (at == g->now) {
-        g->again[w] |= bit;
+        g->again[r / CLOCKED_WORD] |= o->bit;
         return;
     }
-    g->slot[((size_t)(at & g->wheel) << g->word_shift) + w] |= bit;
+    o->slot[(size_t)(at & g->wheel) << g->word_shift] |= o->bit;
     if (at > g->last) g->last = at;
 }
 
