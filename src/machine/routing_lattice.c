@@ -31,6 +31,7 @@ struct lattice *lattice_create(const struct routing *r, struct arena *a)
     const struct topology *t = r->topology;
     struct lattice *g = TAKE(a, 1, struct lattice);
     lattice_shape(g, t->spec);
+    g->nrouter = t->nrouter;
     /* Coordinates by divisions, once: rules ask for them at every router of every packet. */
     g->at = TAKE(a, size_product((size_t)t->nrouter, (size_t)g->ndim), int);
     for (int i = 0; i < t->nrouter * g->ndim; i++)
@@ -229,21 +230,33 @@ static int through_next(const struct routing *r, struct route *p, const struct r
 
 /* ---- UGAL on a flattened butterfly, as BookSim has it ---- */
 
+static int distance(const struct lattice *g, int from, int to)
+{
+    int n = 0;
+    if (g->far) return g->far[from * g->nrouter + to];
+    for (int d = 0; d < g->ndim; d++) n += lattice_at(g, from, d) != lattice_at(g, to, d);
+    return n;
+}
+
+static void butterfly_keep(struct routing *r, struct arena *a)
+{
+    struct lattice *g = r->state;
+    const int n = g->nrouter;
+    uint8_t *far = TAKE(a, size_product((size_t)n, (size_t)n), uint8_t);
+    order_keep(r, a);
+    for (int from = 0; from < n; from++)
+        for (int to = 0; to < n; to++) far[from * n + to] = (uint8_t)distance(g, from, to);
+    g->far = far;
+}
+
 static bool butterfly_create(struct routing *r, struct arena *a, struct err *e)
 {
     r->state = lattice_create(r, a);
-    r->keep = order_keep;
+    r->keep = butterfly_keep;
     r->most = 1;
     r->max_hops = 2 * r->topology->max_hops;
     r->by_load = r->at_source = r->minimal = true;
     return routing_needs(r, 2, "one half for each leg", e);
-}
-
-static int distance(const struct lattice *g, int from, int to)
-{
-    int n = 0;
-    for (int d = 0; d < g->ndim; d++) n += lattice_at(g, from, d) != lattice_at(g, to, d);
-    return n;
 }
 
 /* Once, at the source: minimal if its queue times its links is at most two flits above that of the

@@ -8,7 +8,7 @@
 enum { LATTICE_MOST_DIMS = 32 };
 
 struct lattice {
-    int ndim, degree;
+    int nrouter, ndim, degree;
     int diameter; /* by its own links: a hypercube's Xpress links are not used */
     bool wraps;   /* rings: two ways round */
     bool direct;  /* a link to every other router of a line, not to its neighbours alone */
@@ -21,6 +21,7 @@ struct lattice {
     /* (nrouter x nrouter) by order of dimensions, ascending and descending: place in a router's row
      * of `out` of the link on to another router; NULL: not kept */
     uint8_t *slot[2];
+    uint8_t *far; /* (nrouter x nrouter) dimensions in which two routers differ; NULL: not kept */
 };
 
 /* lattice_create: of r->topology, memory from a. */

@@ -311,6 +311,7 @@ bool net_clocked(struct net *n, const struct clocked_list *q, struct clocked_res
     if (!list_is_even(g, gap, &longest) || !ports_make(g, from)) return false;
     ports_fill(g, from);
     if (!lanes_make(g, longest, gap)) return false;
+    g->longest = longest;
     g->next = TAKE(n->arena, q->count + 1, int32_t);
     routing_keep(n->routing, n->arena);
     /* All steps together take as long as some messages. */

@@ -145,27 +145,6 @@ static bool bid_add(struct clocked *g, struct clocked_lane *v, struct clocked_po
     return true;
 }
 
-/* From when on both sides of the switch are free: v's port and `out`. */
-static int32_t switch_free(const struct clocked *g, const struct clocked_lane *v,
-                           const struct clocked_port *out)
-{
-    return clocked_later(clocked_port_of(g, v)->passed, out->free);
-}
-
-/* From when on a FIFO that has its channel has a flit, a credit, and a free way. */
-static int32_t sends_from(struct clocked *g, struct clocked_lane *v, int32_t now)
-{
-    if (v->out >= v->in) return CLOCKED_NEVER; /* its next flit has not been sent */
-    struct clocked_lane *to = &g->lane[v->front->ahead->lane];
-    const struct clocked_port *out = clocked_port_of(g, to);
-    int32_t at = switch_free(g, v, out);
-    /* A whole packet is there when its head is. */
-    at = clocked_later(at, g->whole ? v->due : clocked_ring(g, v)[v->out & g->ring].come);
-    if (out >= g->sink) return at;
-    return clocked_later(at,
-                         clocked_room(g, to, out, g->whole ? v->front->flits : 1, now, g->whole));
-}
-
 /* Whether one of the channels of an option is free and has a credit. */
 static bool eligible(struct clocked *g, const struct clocked_lane *v, struct clocked_way o,
                      int32_t now)
@@ -197,7 +176,7 @@ static int32_t bid_asking(struct clocked *g, struct clocked_lane *v, int32_t now
     for (int i = 0; i == 0 || i < v->head.noption; i++) {
         const struct clocked_way o = clocked_option(g, v, i);
         if ((!g->strict && o.priority != best) || !may[i]) continue;
-        int32_t at = switch_free(g, v, o.port);
+        int32_t at = clocked_later(clocked_port_of(g, v)->passed, o.port->free);
         if (at <= now && !bid_add(g, v, o.port, true)) at = now + 1;
         if (at > now) again = clocked_sooner(again, at);
     }
@@ -295,7 +274,7 @@ static bool winner_sends(struct clocked *g, const struct clocked_bid *b, int32_t
     if (clocked_port_of(g, to) != b->out) return false;
     const int32_t unit = g->whole ? v->front->flits : 1;
     if (b->out < g->sink && clocked_room(g, to, b->out, unit, now, g->whole) > now) return false;
-    clocked_send(g, v, now);
+    clocked_send(g, v, now, INT32_MAX);
     return true;
 }
 
@@ -335,53 +314,66 @@ static int active_find(struct clocked *g, const struct clocked_router *o, int32_
         const int i = __builtin_ctzll(busy);
         struct clocked_lane *v = &o->lane[i];
         if (v->head.state == LANE_ROUTING && v->due <= now) clocked_route(g, v);
-        const int32_t at = v->head.state == LANE_SENDING ? sends_from(g, v, now) : v->due;
+        const int32_t at =
+            v->head.state == LANE_SENDING ? clocked_sends_from(g, v, now, g->whole) : v->due;
         if (at > now) *again = clocked_sooner(*again, at);
         else if (!(tried >> i & 1)) g->active[n++] = v;
     }
     return n;
 }
 
-enum { MOST_APART = 6 };
-
-/* Whether none of the first n of g->active is in another's way: no two have an input or an output
- * in common, and a channel that a lone head is given stays its own. */
-static bool are_apart(const struct clocked *g, int n)
+/* v alone: it shares no port with others that can do something now, so that it cannot meet them,
+ * whatever the order. */
+static int32_t look_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
-    uint64_t in = 0, out = 0;
-    if (n > MOST_APART) return false;
-    for (int k = 0; k < n; k++) {
-        const struct clocked_lane *v = g->active[k];
-        const uint64_t entry = UINT64_C(1) << clocked_port_of(g, v)->in, ways = clocked_ways(v);
-        if (v->head.state == LANE_ASKING && !g->single) return false;
-        if ((in & entry) || (out & ways)) return false;
-        in |= entry;
-        out |= ways;
-    }
-    return true;
+    if (v->head.state == LANE_ASKING && v->head.noption <= 1 && clocked_quick(g, v, now))
+        return CLOCKED_NEVER;
+    return clocked_pass(g, v, now);
 }
 
-/* The looks of the lanes that can do something now, and of others when they can. */
-static int32_t lanes_look(struct clocked *g, struct clocked_router *o, int32_t now)
+/* Inputs and outputs of several lanes; heads that have several ways or ask at the same output. */
+struct crowd {
+    uint64_t in, out, in_twice, out_twice, asked;
+    bool mixed;
+};
+
+/* A channel that a lone head is given stays its own (single); else all go together. */
+int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t now)
 {
+    struct crowd c = {0};
     int32_t again = CLOCKED_NEVER;
-    const int n = active_find(g, o, now, &again);
-    if (n == 0) return again;
-    if (!are_apart(g, n)) return clocked_sooner(again, allocate_together(g, n, now));
-    /* Lanes that share no port cannot meet, whatever the order: no lists, no rounds. */
+    int m = 0;
+    for (int k = 0; k < n; k++) {
+        const struct clocked_lane *v = g->active[k];
+        const uint64_t in = UINT64_C(1) << g->entry[v - o->lane], out = clocked_ways(v);
+        if (v->head.state == LANE_ASKING && !g->single) return allocate_together(g, n, now);
+        c.in_twice |= c.in & in;
+        c.out_twice |= c.out & out;
+        c.in |= in;
+        c.out |= out;
+    }
     for (int k = 0; k < n; k++) {
         struct clocked_lane *v = g->active[k];
-        if (g->single && v->head.state == LANE_ASKING && v->head.noption <= 1 &&
-            clocked_quick(g, v, now))
+        const uint64_t out = clocked_ways(v);
+        if (!(c.in_twice >> g->entry[v - o->lane] & 1) && !(c.out_twice & out)) {
+            again = clocked_sooner(again, look_alone(g, v, now));
             continue;
-        again = clocked_sooner(again, clocked_pass(g, v, now));
+        }
+        g->active[m++] = v;
+        if (v->head.state == LANE_SENDING) continue;
+        c.mixed |= v->head.noption > 1 || (c.asked & out);
+        c.asked |= out;
     }
-    return again;
+    if (m == 0) return again;
+    const int32_t few = c.mixed ? -1 : clocked_few(g, o, m, now);
+    return clocked_sooner(again, few >= 0 ? few : allocate_together(g, m, now));
 }
 
 int32_t clocked_look_slowly(struct clocked *g, struct clocked_router *o, int32_t now)
 {
-    const int32_t again = lanes_look(g, o, now);
+    int32_t again = CLOCKED_NEVER;
+    const int n = active_find(g, o, now, &again);
+    if (n > 0) again = clocked_sooner(again, clocked_meet(g, o, n, now));
     if (o->tried != now) return again;
     /* Who tried before in this cycle comes back as it said then. */
     return o->again = clocked_sooner(again, o->again);

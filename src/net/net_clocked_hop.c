@@ -139,40 +139,58 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
 
 /* ---- looks ---- */
 
-/* Most often one lane is due, whose head has a clear way: see look_quickly. */
-CLOCKED_INLINED bool look_quickly(struct clocked *g, struct clocked_router *o, int32_t now,
-                                  int32_t *again, const bool whole)
+/* The lanes of router o that can do something now into g->active, and how many; *next: when the
+ * first of the others can. A head whose way is asked for only where it stands asks here. */
+CLOCKED_INLINED int due_find(struct clocked *g, struct clocked_router *o, int32_t now,
+                             int32_t *next, const bool whole)
 {
-    int due = -1;
-    int32_t next = CLOCKED_NEVER;
+    int n = 0;
     for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
-        const int i = __builtin_ctzll(busy);
-        struct clocked_lane *v = &o->lane[i];
+        struct clocked_lane *v = &o->lane[__builtin_ctzll(busy)];
+        int32_t at = v->due;
         if (v->head.state != LANE_ASKING) {
-            if (v->head.state == LANE_ROUTING && v->due <= now) clocked_route(g, v);
-            if (v->head.state == LANE_SENDING) return false;
+            if (v->head.state == LANE_SENDING) at = clocked_sends_from(g, v, now, whole);
+            else if (at <= now) {
+                clocked_route(g, v);
+                at = v->due;
+            }
         }
-        if (v->due > now) {
-            next = clocked_sooner(next, v->due);
-            continue;
-        }
-        if (due >= 0 || v->head.noption > 1) return false;
-        due = i;
+        if (at > now) *next = clocked_sooner(*next, at);
+        else g->active[n++] = v;
     }
-    *again = next;
-    return due < 0 || hop(g, o, due, next, now, whole) || clocked_quick(g, &o->lane[due], now);
+    return n;
+}
+
+/* Router o, of which no lane tried before in this cycle. Returns when to look again. */
+CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, int32_t now,
+                                  const bool whole)
+{
+    int32_t next = CLOCKED_NEVER, again;
+    const int n = due_find(g, o, now, &next, whole);
+    if (n == 0) return next;
+    if (n > 1) {
+        again = clocked_meet(g, o, n, now);
+    } else {
+        struct clocked_lane *v = g->active[0];
+        if (v->head.state == LANE_ASKING && v->head.noption <= 1 &&
+            (hop(g, o, (int)(v - o->lane), next, now, whole) || clocked_quick(g, v, now)))
+            return next;
+        again = clocked_pass(g, v, now);
+    }
+    again = clocked_sooner(again, next);
+    if (o->tried == now) o->again = again;
+    return again;
 }
 
 /* If router r is due; `tried`: lanes of it tried before in this cycle. */
 CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool tried, const bool whole)
 {
     struct clocked_router *o = &g->router[r];
-    int32_t again = CLOCKED_NEVER;
     if (o->wake != now) return; /* an earlier look did it */
     o->wake = CLOCKED_NEVER;
     if (!o->busy) return; /* what was waited for has been served */
-    if (tried || !g->single || !look_quickly(g, o, now, &again, whole))
-        again = clocked_look_slowly(g, o, now);
+    const int32_t again =
+        tried || !g->single ? clocked_look_slowly(g, o, now) : look_once(g, o, now, whole);
     if (again != CLOCKED_NEVER) clocked_wake(g, r, again);
 }
 

@@ -46,15 +46,21 @@ static inline uint64_t clocked_bit(const struct clocked *g, const struct clocked
     return UINT64_C(1) << (v - g->router[p->to].lane);
 }
 
-/* clocked_tries: v takes part in an allocation of this cycle, and so in no other (router_tries). */
+/* clocked_try: lanes of o take part in an allocation of this cycle, and so in no other
+ * (router_tries). */
+static inline void clocked_try(const struct clocked *g, struct clocked_router *o)
+{
+    if (o->tried == g->now) return;
+    o->tried = g->now;
+    o->lanes_tried = 0;
+    o->again = CLOCKED_NEVER;
+}
+
+/* clocked_tries: v does. */
 static inline void clocked_tries(const struct clocked *g, const struct clocked_lane *v)
 {
     struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
-    if (o->tried != g->now) {
-        o->tried = g->now;
-        o->lanes_tried = 0;
-        o->again = CLOCKED_NEVER;
-    }
+    clocked_try(g, o);
     o->lanes_tried |= UINT64_C(1) << (v - o->lane);
 }
 
@@ -73,12 +79,13 @@ static inline union clocked_stay *clocked_ring(const struct clocked *g,
 }
 
 /* clocked_gone: when flit number `last` of v left: level packet. It is one of the packets that left
- * last, of which a buffer can hold few. */
+ * last; those behind it have `longest` flits at most. */
 static inline int32_t clocked_gone(const struct clocked *g, const struct clocked_lane *v,
                                    int32_t last)
 {
     const union clocked_stay *ring = clocked_ring(g, v);
     int32_t k = v->nleft - 1;
+    if (v->out - last > 4 * g->longest) k -= (v->out - 1 - last) / g->longest;
     while (ring[k & g->ring].position > last) k--;
     return ring[k & g->ring].at + last - ring[k & g->ring].position;
 }

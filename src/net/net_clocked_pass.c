@@ -196,7 +196,7 @@ static inline void flits_come(struct clocked *g, struct clocked_port *p, struct 
 
 /* The steps are in the order of net_router_pass.c. The last one of a tail gives the records back:
  * its leg in v, and where it leaves the network the one ahead and the packet, too. */
-void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now)
+void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t most)
 {
     struct clocked_leg *l = v->front, *m = l->ahead;
     struct clocked_worm *w = m->worm;
@@ -205,7 +205,9 @@ void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now)
     const bool head = m->sent == 0, sink = p >= g->sink;
     int32_t tail = now + l->flits - 1, sent = l->flits;
     if (g->whole) packet_crosses(g, v, p, out, sink, now);
-    else sent = flits_cross(g, v, in, p, out, sink, l->flits - m->sent, now, &tail);
+    else
+        sent = flits_cross(g, v, in, p, out, sink, clocked_sooner(most, l->flits - m->sent), now,
+                           &tail);
     m->sent += sent;
     in->held -= sent;
     if (!g->whole && !sink) p->held += sent;
@@ -227,25 +229,14 @@ void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now)
 
 /* ---- a lane that is alone ---- */
 
-/* What a head without rivals finds on one way: the free channel whose turn it is, NULL if there is
- * none; whether it bids for the switch; when something may be free that is not now. */
-struct chance {
-    struct clocked_lane *channel;
-    int number;
-    uint8_t distance;
-    bool bids;
-    int32_t again;
-};
-
-/* The same for channels first .. first + count - 1 of port p. */
-static inline struct chance find_channel(struct clocked *g, struct clocked_lane *v,
-                                         const struct clocked_port *p, int first, int count,
-                                         int32_t now)
+static inline struct clocked_chance find_channel(struct clocked *g, struct clocked_lane *v,
+                                                 const struct clocked_port *p, int first, int count,
+                                                 int32_t now)
 {
     const bool sink = p >= g->sink;
     const int outputs = p->lanes_out;
     const int32_t unit = g->whole ? v->front->flits : 1;
-    struct chance c = {.again = CLOCKED_NEVER};
+    struct clocked_chance c = {.again = CLOCKED_NEVER};
     for (int i = first; i < first + count; i++) {
         struct clocked_lane *out = &p->lane[i];
         if (out->owned) continue;
@@ -269,18 +260,25 @@ static inline struct chance find_channel(struct clocked *g, struct clocked_lane 
     return c;
 }
 
+struct clocked_chance clocked_find(struct clocked *g, struct clocked_lane *v,
+                                   const struct clocked_port *p, int first, int count, int32_t now)
+{
+    return find_channel(g, v, p, first, count, now);
+}
+
 /* The front of v, alone, gets channel `number` of port p and the switch in the same cycle, and
  * goes. Where all of it goes at once, nobody ever owns the channel, and its leg moves from one FIFO
  * to the next instead of being made anew. */
 CLOCKED_INLINED void pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
-                             struct clocked_port *p, int number, int32_t now, const bool whole)
+                             struct clocked_port *p, int number, int32_t now, int32_t most,
+                             const bool whole)
 {
     struct clocked_lane *out = &p->lane[number];
     struct clocked_leg *l = v->front, *m = l;
     const bool sink = p >= g->sink;
     int32_t sent = l->flits, tail = now + sent - 1;
     if (whole) packet_crosses(g, v, p, out, sink, now);
-    else sent = flits_cross(g, v, in, p, out, sink, sent, now, &tail);
+    else sent = flits_cross(g, v, in, p, out, sink, clocked_sooner(most, sent), now, &tail);
     in->held -= sent;
     if (!whole && !sink) p->held += sent;
     p->free = in->passed = v->left = tail + 1;
@@ -309,6 +307,14 @@ CLOCKED_INLINED void pass_on(struct clocked *g, struct clocked_lane *v, struct c
     struct clocked_worm *w = l->worm;
     clocked_leg_return(g, l);
     clocked_delivered(g, w, tail);
+}
+
+void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
+                     struct clocked_port *p, int number, int32_t now, int32_t most)
+{
+    if (p->lane[number].clear <= now) clocked_restart(&p->lane[number]);
+    if (g->whole) pass_on(g, v, in, p, number, now, most, true);
+    else pass_on(g, v, in, p, number, now, most, false);
 }
 
 /* Of the channels that v's only way on offers, the one whose turn it is; -1: none is there, or not
@@ -347,7 +353,7 @@ CLOCKED_INLINED bool head_quick(struct clocked *g, struct clocked_lane *v, int i
     clocked_crosses(in, p);
     in->turn = clocked_next_channel(g, channel);
     clocked_given(v, input, &p->lane[number], p->lanes_out + number);
-    pass_on(g, v, in, p, number, now, whole);
+    pass_on(g, v, in, p, number, now, INT32_MAX, whole);
     return true;
 }
 
@@ -364,7 +370,7 @@ __attribute__((noinline)) bool clocked_quick(struct clocked *g, struct clocked_l
 static int32_t head_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
     struct clocked_port *in = clocked_port_of(g, v), *p = v->way;
-    const struct chance c = find_channel(g, v, p, v->head.first, v->head.count, now);
+    const struct clocked_chance c = find_channel(g, v, p, v->head.first, v->head.count, now);
     int32_t again = c.again;
     bool bids = c.bids;
     const int32_t at = clocked_later(in->passed, p->free);
@@ -382,9 +388,7 @@ static int32_t head_alone(struct clocked *g, struct clocked_lane *v, int32_t now
     if (!c.channel) return bids ? clocked_sooner(again, now + 1) : again;
     clocked_given(v, (int)(v - g->router[in->to].lane), c.channel, p->lanes_out + c.number);
     if (bids && (g->whole || p >= g->sink || clocked_room(g, c.channel, p, 1, now, false) <= now)) {
-        if (c.channel->clear <= now) clocked_restart(c.channel);
-        if (g->whole) pass_on(g, v, in, p, c.number, now, true);
-        else pass_on(g, v, in, p, c.number, now, false);
+        clocked_pass_on(g, v, in, p, c.number, now, INT32_MAX);
         return again;
     }
     clocked_own(g, v, c.channel);
@@ -429,14 +433,14 @@ static struct clocked_port *find_output(struct clocked *g, const struct clocked_
 static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
     bool may[CLOCKED_OPTIONS], bars = false;
-    struct chance best = {.again = CLOCKED_NEVER};
+    struct clocked_chance best = {.again = CLOCKED_NEVER};
     int priority = 0;
     int32_t again = CLOCKED_NEVER;
     struct clocked_port *in = clocked_port_of(g, v), *from = NULL;
     for (int i = 0; i < v->head.noption; i++) {
         const struct clocked_way o = clocked_option(g, v, i);
         const int level = g->priority ? o.priority : 0;
-        const struct chance c = find_channel(g, v, o.port, o.first, o.count, now);
+        const struct clocked_chance c = find_channel(g, v, o.port, o.first, o.count, now);
         again = clocked_sooner(again, c.again);
         may[i] = c.bids;
         /* A strict rule's head goes only where all its ways are open. */
@@ -462,7 +466,7 @@ static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t 
     }
     if (p && !bars && from == p &&
         clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now)
-        clocked_send(g, v, now);
+        clocked_send(g, v, now, INT32_MAX);
     else if (p) again = clocked_sooner(again, now + 1);
     return from && clocked_waits(v) ? clocked_sooner(again, now + 1) : again;
 }
@@ -472,8 +476,8 @@ int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now)
     if (v->head.state != LANE_SENDING)
         return v->head.noption > 1 ? head_choosing(g, v, now) : head_alone(g, v, now);
     struct clocked_port *in = clocked_port_of(g, v);
-    clocked_crosses(in, clocked_port_of(g, &g->lane[v->front->ahead->lane]));
+    clocked_crosses(in, v->way);
     in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
-    clocked_send(g, v, now);
+    clocked_send(g, v, now, INT32_MAX);
     return CLOCKED_NEVER;
 }

@@ -72,7 +72,7 @@ struct clocked_port {
 
 struct clocked_router {
     _Alignas(ROUTER_LINE) uint64_t busy; /* lanes that have a front */
-    struct clocked_lane *lane; /* its first ones */
+    struct clocked_lane *lane;           /* its first ones */
     struct clocked_port *port;
     uint64_t lanes_tried; /* in an allocation, */
     int32_t tried, again; /* in which cycle; when they come back */
@@ -155,9 +155,9 @@ struct clocked {
     struct net *net;
     const struct clocked_list *list;
     struct clocked_result *result;
-    int64_t bytes; /* of the message before, its flits and gap */
-    int32_t flits, gap;
-    int done; /* messages that have left the network */
+    int64_t bytes;               /* of the message before, its flits and gap */
+    int32_t flits, gap, longest; /* flits of the longest packet */
+    int done;                    /* messages that have left the network */
     sim_ps unit;
     struct clocked_match *match; /* (lanes) scratch of one allocation */
     struct clocked_side *side;   /* (ports) */

@@ -14,6 +14,10 @@ static int source_channel(struct clocked *g, struct clocked_port *p, const struc
     for (int k = 0; k < w->count; k++, turn++) {
         if (turn == w->count) turn = 0;
         const int i = w->first + turn;
+        if (v[i].clear <= now) {
+            p->enter = (uint8_t)(turn + 1 < w->count ? turn + 1 : 0);
+            return i;
+        }
         if (v[i].owned) continue;
         const int32_t at = clocked_room(g, &v[i], p, unit, now, g->whole);
         *again = clocked_sooner(*again, at);
@@ -54,6 +58,26 @@ static void source_flits(struct clocked *g, int node, int32_t now)
     z->free = clocked_later(z->free, z->free - 1 + l->worm->gap);
 }
 
+/* All flits of l, one in each cycle from now on, into v of port p, which was clear and holds them
+ * all: what source_flits comes to. */
+static void source_whole(struct clocked *g, struct clocked_source *z, struct clocked_lane *v,
+                         struct clocked_leg *l, int32_t now)
+{
+    const int32_t flits = l->flits;
+    struct clocked_port *p = z->port;
+    l->first = l->worm->begun = now;
+    l->sent = flits;
+    v->in = flits;
+    v->owned = false;
+    p->held += flits;
+    if (!g->whole) {
+        union clocked_stay *stay = clocked_ring(g, v);
+        for (int32_t k = 0; k < flits; k++) stay[k].come = now + g->reach + k;
+    }
+    z->free = clocked_later(now + flits, now + flits - 1 + l->worm->gap);
+    clocked_front(g, v, p);
+}
+
 /* The next packet of a node begins, if there is one, over the channel that has room; else it waits.
  * Returns when to look again. */
 static int32_t source_begin(struct clocked *g, int node, int32_t now)
@@ -74,11 +98,18 @@ static int32_t source_begin(struct clocked *g, int node, int32_t now)
         w->count = routing_inject(g->routing, &w->route, &w->first);
         return now + 1;
     }
-    z->sending = clocked_leg(g, &z->port->lane[channel]);
-    z->sending->worm = w;
-    z->sending->flits = w->flits;
+    struct clocked_lane *v = &z->port->lane[channel];
+    const bool clear = v->clear <= now;
+    struct clocked_leg *l = clocked_leg(g, v);
+    l->worm = w;
+    l->flits = w->flits;
     z->front = g->next[z->front];
     z->waiting = NULL;
+    if (clear && l->flits <= g->buffer) {
+        source_whole(g, z, v, l, now);
+        return CLOCKED_NEVER;
+    }
+    z->sending = l;
     source_flits(g, node, now);
     return CLOCKED_NEVER;
 }

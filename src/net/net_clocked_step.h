@@ -13,9 +13,17 @@ void clocked_cycle(struct clocked *g, uint64_t *slot);
  * there one after the other. */
 void clocked_source_look(struct clocked *g, int node, int32_t now);
 
-/* clocked_look_slowly: where a lane is not alone, or its way not clear. Returns when to look
- * again. */
+/* clocked_look_slowly: at all lanes of router o, also where some tried before in this cycle.
+ * Returns when to look again. */
 int32_t clocked_look_slowly(struct clocked *g, struct clocked_router *o, int32_t now);
+
+/* clocked_meet: the n lanes g->active of router o can do something now. Returns when to look again.
+ */
+int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t now);
+
+/* clocked_few: the same where they are few with one way on each, and no two heads ask at one port;
+ * else it does nothing and returns -1. */
+int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t now);
 
 /* clocked_route: the way on of v's front, by the rule itself; clocked_route_on: the same by the
  * table, of v in port p, behind the first router. From now on it asks. */
@@ -23,9 +31,15 @@ void clocked_route(struct clocked *g, struct clocked_lane *v);
 void clocked_route_on(struct clocked *g, struct clocked_lane *v, const struct clocked_port *p);
 
 /* clocked_own: the front of v owns channel `out` from now on, until its tail has crossed.
- * clocked_send: the front of v sends what moves at once over the channel that it owns. */
+ * clocked_send: the front of v sends what moves at once over the channel that it owns, at most
+ * `most` flits. */
 void clocked_own(struct clocked *g, struct clocked_lane *v, struct clocked_lane *out);
-void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now);
+void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t most);
+
+/* clocked_pass_on: the front of v, a lane of `in`, gets channel `number` of port p and the switch
+ * in the same cycle, and sends at most `most` flits. */
+void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
+                     struct clocked_port *p, int number, int32_t now, int32_t most);
 
 /* clocked_pass: v, which is in nobody's way, gets what it asks for, as far as that is there.
  * Returns when to look at it again; CLOCKED_NEVER: nothing of it needs that. */
@@ -59,6 +73,20 @@ struct clocked_way clocked_option(const struct clocked *g, const struct clocked_
 void clocked_taken(struct clocked *g, const struct clocked_lane *v, struct clocked_leg *l,
                    const struct clocked_port *p, int number);
 
+/* What a head finds on one way: the free channel whose turn it is, NULL if there is none; whether
+ * it bids for the switch; when something may be free that is not now. */
+struct clocked_chance {
+    struct clocked_lane *channel;
+    int number;
+    uint8_t distance;
+    bool bids;
+    int32_t again;
+};
+
+/* clocked_find: the same for v and the channels first .. first + count - 1 of port p. */
+struct clocked_chance clocked_find(struct clocked *g, struct clocked_lane *v,
+                                   const struct clocked_port *p, int first, int count, int32_t now);
+
 /* clocked_undisputed: until when nobody can dispute v's way, a lane of `in`, over port out. */
 int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
                            const struct clocked_port *in, const struct clocked_port *out,
@@ -70,5 +98,20 @@ void clocked_delivered(struct clocked *g, struct clocked_worm *w, int32_t tail);
 /* clocked_used: flits that `link` was given and whose credits are not back (router_used); `of` is
  * a struct clocked. */
 int64_t clocked_used(const void *of, int link);
+
+/* clocked_sends_from: from when on v, a FIFO that has its channel, has a flit, a credit, and both
+ * sides of the switch free. */
+CLOCKED_INLINED int32_t clocked_sends_from(struct clocked *g, const struct clocked_lane *v,
+                                           int32_t now, const bool whole)
+{
+    if (v->out >= v->in) return CLOCKED_NEVER; /* its next flit has not been sent */
+    const struct clocked_port *out = v->way;
+    int32_t at = clocked_later(clocked_port_of(g, v)->passed, out->free);
+    /* A whole packet is there when its head is. */
+    at = clocked_later(at, whole ? v->due : clocked_ring(g, v)[v->out & g->ring].come);
+    if (out >= g->sink) return at;
+    return clocked_later(at, clocked_room(g, &g->lane[v->front->ahead->lane], out,
+                                          whole ? v->front->flits : 1, now, whole));
+}
 
 #endif

@@ -51,6 +51,7 @@ int64_t clocked_used(const void *of, int link)
     const bool home = p->passed + g->credit + p->wire <= g->now; /* all credits of what left */
     if (home && used == 0) return 0;
     for (uint32_t k = 0; k < g->nchannel; k++) {
+        if (p->lane[k].clear <= g->now) continue; /* it has nothing, and all its credits */
         if (!g->whole) used += flits_used(g, p, &p->lane[k]);
         else if (!home) used += packets_used(g, p, &p->lane[k]);
     }

@@ -1,0 +1,174 @@
+/* net_clocked_few.c - looks at routers in which few lanes meet: what net_clocked_allocate.c does,
+ * without its lists.
+ *
+ * Each lane has one way on, and no two heads ask at one port, so that each gets the free channel
+ * whose turn it is. What is left is the switch, among so few bids that a set of them is a byte.
+ *
+ * Say bids 0 and 1 are for one output, 1 and 2 from one input, and the output's turn is nearer to
+ * 0, the input's to 1. Then nearer_out[1] = {0} and nearer_in[2] = {1}. In the first round the
+ * outputs offer themselves to 0 and 2; 1 is offered nothing, so that 2 is the best of its input,
+ * and both win. Had the output's turn been nearer to 1, its input would have accepted that, and 2
+ * would have to come back, as 0 would: nothing is left for a second round.
+ *
+ * Offers depend on turns as they were before the round, which is why turns are compared once, when
+ * a bid is added: those of a port that has been given do not count any more. */
+#include "base/check.h"
+#include "net/net_clocked_step.h"
+
+enum { FEW = 8 };
+
+/* A bid for the switch. */
+struct bid {
+    struct clocked_lane *lane, *channel; /* of a head: the channel that it got, NULL: none */
+    struct clocked_port *in, *out;
+    uint8_t number; /* of the channel */
+    uint8_t input;  /* of the lane in its router */
+    bool head;
+};
+
+struct bids {
+    int n;
+    /* Bids for the same output that are nearer to its turn, of the same input that are nearer to
+     * the turn of that, and all that meet this one. */
+    uint8_t nearer_in[FEW], nearer_out[FEW], meet[FEW];
+    bool merged[FEW]; /* it won against another of the same input and output */
+    struct bid bid[FEW];
+};
+
+/* Of two FIFOs of an input that bid for one output one does: that which has its channel before that
+ * which hopes for it, then by turn. The other one will have to come back. */
+static void bids_merge(struct clocked *g, struct bids *s, int i, const struct bid *b)
+{
+    struct bid *x = &s->bid[i], loser = *b;
+    const int n = (int)g->nchannel, turn = b->in->turn,
+              mine = (g->channel[b->input] + n - turn) % n,
+              its = (g->channel[x->input] + n - turn) % n;
+    if (b->head != x->head ? !b->head : mine < its) {
+        loser = *x;
+        *x = *b;
+    }
+    s->merged[i] = true;
+    if (loser.channel) clocked_own(g, loser.lane, loser.channel);
+}
+
+/* Notes which of two bids for one output, or of one input, is nearer to the turn. */
+static void bids_compare(struct bids *s, int i, int n)
+{
+    const struct clocked_port *in = s->bid[n].in, *out = s->bid[n].out, *in2 = s->bid[i].in,
+                              *out2 = s->bid[i].out;
+    const uint8_t mine = (uint8_t)(1 << n), its = (uint8_t)(1 << i);
+    s->meet[n] |= its;
+    s->meet[i] |= mine;
+    if (in == in2) {
+        const int turn = in->accept;
+        if (clocked_after(out->out, turn) < clocked_after(out2->out, turn)) s->nearer_in[i] |= mine;
+        else s->nearer_in[n] |= its;
+    } else {
+        const int turn = out->grant;
+        if (clocked_after(in->in, turn) < clocked_after(in2->in, turn)) s->nearer_out[i] |= mine;
+        else s->nearer_out[n] |= its;
+    }
+}
+
+/* False: it was merged with another one. */
+static bool bids_add(struct clocked *g, struct bids *s, const struct bid *b)
+{
+    const int n = s->n;
+    CHECK(n < FEW);
+    for (int i = 0; i < n; i++)
+        if (s->bid[i].in == b->in && s->bid[i].out == b->out) {
+            bids_merge(g, s, i, b);
+            return false;
+        }
+    s->nearer_in[n] = s->nearer_out[n] = s->meet[n] = 0;
+    s->merged[n] = false;
+    s->bid[s->n++] = *b;
+    for (int i = 0; i < n; i++)
+        if (s->bid[i].in == b->in || s->bid[i].out == b->out) bids_compare(s, i, n);
+    return true;
+}
+
+/* The set of bids that win, in rounds: every output that has none yet offers itself to the input
+ * whose turn it is, every input accepts one. Turns move on in the first round alone. */
+static unsigned bids_win(const struct clocked *g, const struct bids *s)
+{
+    unsigned left = (1u << s->n) - 1, won = 0;
+    for (int k = 0; k < g->iterations && left; k++) {
+        unsigned offered = 0, accepted = 0;
+        for (int i = 0; i < s->n; i++)
+            if ((left >> i & 1) && !(s->nearer_out[i] & left)) offered |= 1u << i;
+        for (int i = 0; i < s->n; i++)
+            if ((offered >> i & 1) && !(s->nearer_in[i] & offered)) accepted |= 1u << i;
+        for (int i = 0; i < s->n; i++) {
+            if (!(accepted >> i & 1)) continue;
+            left &= ~(1u << i | s->meet[i]);
+            if (k == 0) clocked_crosses(s->bid[i].in, s->bid[i].out);
+        }
+        won |= accepted;
+    }
+    return won;
+}
+
+/* The bid of head v, number b->input of its router, into *b, and the channel that it gets. False:
+ * it makes none. */
+static bool bid_of_head(struct clocked *g, struct clocked_router *o, struct clocked_lane *v,
+                        int32_t now, struct bid *b, int32_t *again)
+{
+    struct clocked_port *p = v->way;
+    const struct clocked_chance c = clocked_find(g, v, p, v->head.first, v->head.count, now);
+    const int32_t at = clocked_later(b->in->passed, p->free);
+    const bool bids = c.bids && at <= now;
+    b->head = true;
+    b->channel = c.channel;
+    b->number = (uint8_t)c.number;
+    *again = clocked_sooner(*again, c.again);
+    if (c.bids && !bids) *again = clocked_sooner(*again, at);
+    if (c.channel) clocked_given(v, b->input, c.channel, p->lanes_out + c.number);
+    if (c.channel || bids) o->lanes_tried |= UINT64_C(1) << b->input;
+    if (c.channel && !bids) {
+        clocked_own(g, v, c.channel);
+        *again = clocked_sooner(*again, now + 1);
+    }
+    return bids;
+}
+
+/* What becomes of a bid. False: it has to come back. Whom others meet sends one flit: these bid
+ * again in the next cycle. */
+static bool bid_ends(struct clocked *g, const struct bid *b, bool won, bool met, int32_t now)
+{
+    const int32_t most = met ? 1 : INT32_MAX;
+    if (won) b->in->turn = g->after[b->input];
+    if (!b->head) {
+        if (won) clocked_send(g, b->lane, now, most);
+        return won;
+    }
+    if (!b->channel) return false;
+    if (won && (g->whole || b->out >= g->sink ||
+                clocked_room(g, b->channel, b->out, 1, now, false) <= now)) {
+        clocked_pass_on(g, b->lane, b->in, b->out, b->number, now, most);
+        return true;
+    }
+    clocked_own(g, b->lane, b->channel);
+    return false;
+}
+
+int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t now)
+{
+    struct bids s = {0};
+    int32_t again = CLOCKED_NEVER;
+    if (n > FEW) return -1;
+    clocked_try(g, o);
+    for (int k = 0; k < n; k++) {
+        struct clocked_lane *v = g->active[k];
+        const int i = (int)(v - o->lane);
+        struct bid b = {.lane = v, .in = &o->port[g->entry[i]], .out = v->way, .input = (uint8_t)i};
+        if (v->head.state == LANE_SENDING) o->lanes_tried |= UINT64_C(1) << i;
+        else if (!bid_of_head(g, o, v, now, &b, &again)) continue;
+        if (!bids_add(g, &s, &b)) again = now + 1;
+    }
+    /* Only now does anything cross: what bids see is the state at the beginning of the cycle. */
+    const unsigned won = bids_win(g, &s);
+    for (int i = 0; i < s.n; i++)
+        if (!bid_ends(g, &s.bid[i], won >> i & 1, s.meet[i] || s.merged[i], now)) again = now + 1;
+    return again;
+}
