@@ -149,7 +149,8 @@ static bool read_versions(struct elf_file *f, const struct dynamic *d, struct er
             return elf_bad(f, e, "a list of versions ends early");
         at += need->vn_next;
     }
-    f->verneed = (struct elf_table){elf_file_at(f, d->verneed, 0, 4), (size_t)d->verneednum};
+    f->verneed = d->verneed;
+    f->nverneed = d->verneednum;
     return true;
 }
 
@@ -157,14 +158,15 @@ static bool read_versions(struct elf_file *f, const struct dynamic *d, struct er
  * only tells that it is hidden. */
 const char *elf_file_version(const struct elf_file *f, size_t i)
 {
-    if (!f->version || f->verneed.n == 0) return NULL;
+    if (!f->version) return NULL;
     const uint16_t wanted = f->version[i] & 0x7fff;
-    const char *at = f->verneed.at;
-    for (size_t n = 0; n < f->verneed.n; n++) {
-        const Elf64_Verneed *need = (const Elf64_Verneed *)at;
-        const char *aux = at + need->vn_aux;
+    uint64_t at = f->verneed;
+    /* By addresses, as read_versions went: what follows in memory may lie elsewhere in the file. */
+    for (uint64_t n = 0; n < f->nverneed; n++) {
+        const Elf64_Verneed *need = elf_file_at(f, at, sizeof *need, 4);
+        uint64_t aux = at + need->vn_aux;
         for (int k = 0; k < need->vn_cnt; k++) {
-            const Elf64_Vernaux *v = (const Elf64_Vernaux *)aux;
+            const Elf64_Vernaux *v = elf_file_at(f, aux, sizeof *v, 4);
             if ((v->vna_other & 0x7fff) == wanted) return elf_file_name(f, v->vna_name);
             aux += v->vna_next;
         }

@@ -34,7 +34,7 @@ struct elf_file {
     const Elf64_Sym *symbol; /* (nsymbol) names checked */
     size_t nsymbol;
     const uint16_t *version;         /* (nsymbol) NULL: no versions */
-    struct elf_table verneed;        /* .n: of files */
+    uint64_t verneed, nverneed;      /* address of the versions wanted of files, how many files */
     struct elf_table rela[2];        /* Elf64_Rela: DT_RELA, DT_JMPREL */
     struct elf_table relr;           /* uint64_t: DT_RELR */
     uint64_t init, fini;             /* addresses of functions, 0: none */

@@ -270,7 +270,12 @@ static void the_version_that_was_linked_is_the_one(void **state)
     /* the version's name stands in the table of names */
     made_unknown(0, "GLIBC_2.2.5", STB_WEAK);
     table.aux.vna_name = made[0].symbol[3].st_name;
-    program->file[0].elf.verneed = (struct elf_table){&table, 1};
+    struct elf_file *f = &program->file[0].elf;
+    f->bytes = (char *)&table;
+    f->segment[0] = (Elf64_Phdr){.p_vaddr = 0x1000, .p_filesz = sizeof table};
+    f->nsegment = 1;
+    f->verneed = 0x1000;
+    f->nverneed = 1;
     made[0].version[old] = 2;
     made_image();
     assert_true(symbols_find(program, &program->file[0], old, &s));
