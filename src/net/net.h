@@ -36,6 +36,8 @@ struct net_message {
     int src, dst;       /* nodes (not ranks, not routers) */
     /* of the source node that sends: the own messages of `uncontended` are its */
     int processor;
+    /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
+    uint32_t path;
     int64_t bytes;      /* payload >= 0 */
     int64_t id;         /* unique and deterministic: breaks ties; (source, count) order */
     sim_ps ready;       /* when the source may start injecting */
@@ -44,8 +46,6 @@ struct net_message {
     sim_ps
         uncontended; /* out: when it would have arrived had no other message (of another rank) been
                         in its way; the sender's own gap g and port are part of it, as in LogGP */
-    /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
-    uint32_t path;
 };
 
 typedef void net_deliver_fn(void *context, struct net_message *m);

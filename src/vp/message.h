@@ -46,17 +46,18 @@ struct message {
     sim_ps sent;                         /* when the send began; for spans */
     sim_ps delay;                        /* rendezvous: contention of the hand-shake */
     sim_ps copied;        /* when the sender's engine has copied it; 0: there is none */
-    uint32_t copied_path; /* node of that */
     int64_t tag;
+    uint32_t copied_path; /* node of `copied` */
     uint16_t size_class;
-    uint16_t kind;
-    uint16_t synchronous; /* its sender waits until it is taken, whatever its size */
-    uint16_t hollow;      /* it has a size and no content */
+    uint8_t kind;
+    bool synchronous : 1; /* its sender waits until it is taken, whatever its size */
+    bool hollow : 1;      /* it has a size and no content */
     char data[];
 };
+_Static_assert(sizeof(struct message) <= 152, "several for each rank wait to be received");
 
-/* by 64 bytes up to 4 KiB, by quarters of an octave up to 4 PiB */
-enum { MESSAGE_CLASSES = 65 + 4 * 40 };
+/* by 16 bytes up to 4 KiB, by quarters of an octave up to 4 PiB */
+enum { MESSAGE_CLASSES = 257 + 4 * 40 };
 
 /* message_key: orders events of messages at one time by sender, then by count. */
 static inline uint64_t message_key(const struct message *m)

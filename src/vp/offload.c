@@ -55,8 +55,8 @@ void offload_computed(struct vp *v, sim_ps begin)
     struct world *w = v->world;
     /* Only hand-shakes ask. */
     if (w->machine->software.offload != OFFLOAD_NONE || w->eager_only || v->clock == begin) return;
-    if (v->pieces == NULL) v->pieces = TAKE(w->scratch, 1, struct pieces);
-    struct pieces *p = v->pieces;
+    if (v->extra->pieces == NULL) v->extra->pieces = TAKE(w->scratch, 1, struct pieces);
+    struct pieces *p = v->extra->pieces;
     /* Counted work that follows counted work is one piece: nothing is answered in between. */
     const bool goes_on = !v->called && p->n > 0 && p->piece[p->n - 1].end == begin;
     if (goes_on) p->piece[p->n - 1].end = v->clock;
@@ -67,7 +67,7 @@ void offload_computed(struct vp *v, sim_ps begin)
 /* At the very beginning and end of a piece the rank is in the calls before and behind it. */
 sim_ps offload_answer(const struct vp *v, sim_ps time)
 {
-    const struct pieces *p = v->pieces;
+    const struct pieces *p = v->extra ? v->extra->pieces : NULL;
     for (int i = 0; p != NULL && i < p->n && p->piece[i].begin < time; i++)
         if (time < p->piece[i].end) return p->piece[i].end;
     return time;
@@ -88,15 +88,15 @@ void offload_send(struct vp *v, struct message *m)
     if (w->machine->software.offload != OFFLOAD_COPIES) return;
     const sim_ps copy = byte_cost(0, message_cost(&w->software, m->bytes)->send_byte, m->bytes);
     /* The engine goes on from the copy before, or begins now. */
-    const bool busy = v->engine_free > v->clock;
+    const bool busy = v->extra->engine_free > v->clock;
     /* The rank's clock does not stand by when many long copies follow each other: no sum of them
      * may wrap. */
-    const sim_ps end = ps_later(busy ? v->engine_free : v->clock, copy);
-    v->engine_path =
-        log_copy(v, busy ? v->engine_path : v->path, end, PATH_ENGINE_SEND, m->bytes);
-    v->engine_free = end;
-    m->net.ready = m->copied = v->engine_free;
-    m->net.path = m->copied_path = v->engine_path;
+    const sim_ps end = ps_later(busy ? v->extra->engine_free : v->clock, copy);
+    v->extra->engine_path =
+        log_copy(v, busy ? v->extra->engine_path : v->path, end, PATH_ENGINE_SEND, m->bytes);
+    v->extra->engine_free = end;
+    m->net.ready = m->copied = v->extra->engine_free;
+    m->net.path = m->copied_path = v->extra->engine_path;
 }
 
 void offload_receive(struct message *m)

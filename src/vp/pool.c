@@ -12,7 +12,8 @@
 #include "base/check.h"
 #include "vp/vp.h"
 
-enum { CLASS_BYTES = 64, SMALL_CLASSES = 65, CHUNK_MESSAGES = 64 };
+/* REACH: how many classes larger the memory of a small message may be. */
+enum { CLASS_BYTES = 16, SMALL_CLASSES = 257, CHUNK_MESSAGES = 64, REACH = 8 };
 
 /* Of more than 4 KiB: the class of the next quarter of an octave, whose size *bytes
  * becomes. Quarters of an octave waste at most a quarter of a block, and 160 classes
@@ -26,12 +27,11 @@ static int large_class(int64_t *bytes)
     return SMALL_CLASSES + (octave - 12) * 4 + (int)n - 5;
 }
 
-/* Small messages come 64 at a time from the arena of the run, in 16 bytes' alignment; a
- * chunk is never given back before the run ends. */
+/* Small messages come 64 at a time from the arena of the run; a chunk is never given back
+ * before the run ends. */
 static struct message *refill(struct message_pool *p, int class)
 {
-    size_t size = sizeof(struct message) + (size_t) class * CLASS_BYTES;
-    size = (size + 15) / 16 * 16;
+    const size_t size = sizeof(struct message) + (size_t) class * CLASS_BYTES;
     char *chunk = arena_take(p->arena, size_product(size, CHUNK_MESSAGES));
     struct message *head = NULL;
     for (int k = CHUNK_MESSAGES - 1; k >= 0; k--) {
@@ -123,12 +123,23 @@ static struct message *supply(struct message_pool *p, int class, int64_t room)
     return class < SMALL_CLASSES ? refill(p, class) : alone(p, room);
 }
 
+/* Programs send messages of one size in one part and of another in the next: those that the first
+ * part has left serve the second. The class to take from, `class` if no other has any. */
+static inline int serving_class(const struct message_pool *p, int class)
+{
+    if (class >= SMALL_CLASSES - REACH) return class;
+    for (int c = class; c <= class + REACH; c++)
+        if (p->free[c]) return c;
+    return class;
+}
+
 struct message *message_take(struct message_pool *p, int64_t bytes)
 {
     int64_t class = (bytes + CLASS_BYTES - 1) / CLASS_BYTES, room = bytes;
     struct message *m;
     if (class >= SMALL_CLASSES) class = large_class(&room);
     CHECK(class < MESSAGE_CLASSES);
+    class = serving_class(p, (int)class);
     if (!p->free[class]) p->free[class] = supply(p, (int)class, room);
     m = p->free[class];
     p->free[class] = m->next;

@@ -35,7 +35,8 @@ void world_make_ranks(struct world *w, uint64_t seed)
         v->processor = w->placement.processor[i];
         v->digest = DIGEST_START;
         /* The stream depends on seed and rank alone. */
-        if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
+        v->extra = w->extra ? &w->extra[i] : NULL;
+        if (w->noisy) v->extra->noise = random_make(seed, (uint64_t)i, 0);
         v->clock = w->start;
         v->fiber = fiber_start(w->fibers, (int)(v - w->whole->vp), rank_main, v);
         /* Tables of matching only where they are used: at 65,536 ranks they would take

@@ -15,10 +15,11 @@ static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
 {
     struct world *w = v->world->whole;
     const int rank = v->comm.rank, stage = v->stage;
+    const sim_ps start = v->extra->server_start;
     const uint32_t own = vp_path_until(v, now), other = w->server_path;
-    v->path = v->server_start > now
+    v->path = start > now
                   ? path_join(w->path,
-                              path_add(w->path, other, v->server_start, PATH_SERVER, w->served_rank,
+                              path_add(w->path, other, start, PATH_SERVER, w->served_rank,
                                        w->served_stage, -1, w->server_bytes),
                               own, 0, PATH_SERVER, rank, stage)
                   : path_join(w->path, own, other, service_time(w, w->server_bytes), PATH_SERVER,
@@ -36,9 +37,9 @@ static void begin_service(void *subject, uint64_t bytes, sim_ps now)
 {
     struct vp *v = subject;
     struct world *w = v->world->whole;
-    v->server_start = now > w->server_free ? now : w->server_free;
+    v->extra->server_start = now > w->server_free ? now : w->server_free;
     if (w->path) bind_path(v, now, (int64_t)bytes);
-    w->server_free = ps_later(v->server_start, service_time(w, (int64_t)bytes));
+    w->server_free = ps_later(v->extra->server_start, service_time(w, (int64_t)bytes));
     vp_wake(w, v);
 }
 
@@ -48,6 +49,6 @@ sim_ps server_pass(struct vp *v, int64_t bytes)
     sim_at(v->world->sim, v->clock, LANE_SERVER, (uint64_t)v->comm.rank, begin_service, v,
            (uint64_t)bytes);
     vp_block(v, WAITING_SERVER, NULL);
-    vp_wait_until(v, v->server_start, v->clock);
+    vp_wait_until(v, v->extra->server_start, v->clock);
     return service_time(v->world, bytes);
 }

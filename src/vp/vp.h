@@ -24,6 +24,7 @@
 #include "sim/sim.h"
 #include "spec/run_spec.h"
 #include "vp/cost.h"
+#include "vp/extra.h"
 #include "vp/message.h"
 #include "vp/world.h"
 
@@ -50,17 +51,14 @@ struct vp {
     struct matching *matching;                    /* timed programs: instead of `unexpected` */
     uint32_t sent; /* messages so far: the lower half of their numbers */
     int node, processor;
-    uint64_t digest;     /* of what it received and when */
-    sim_ps server_start; /* when the kernel server began with it */
-    sim_ps finish;       /* clock at its end */
+    uint32_t path;   /* node of `clock`, where critical paths are recorded */
+    uint64_t digest; /* of what it received and when */
+    sim_ps finish;   /* clock at its end */
     struct fiber *fiber;
-    struct random noise;
-    uint32_t path; /* node of `clock`, where critical paths are recorded */
-    bool called;   /* message software since it last computed (offload.h, as the next ones) */
-    uint32_t engine_path;  /* node of engine_free */
-    sim_ps engine_free;    /* when its engine has made the copies so far */
-    struct pieces *pieces; /* of computing, NULL: none are kept */
+    bool called; /* message software since it last computed (offload.h) */
+    struct vp_extra *extra; /* NULL: this machine asks for none of it */
 } __attribute__((aligned(64)));
+_Static_assert(sizeof(struct vp) <= 192, "a rank takes three lines of the cache");
 
 struct world {
     const struct machine_spec *machine;
@@ -75,6 +73,7 @@ struct world {
     struct fiber_pool *fibers;
     struct stack_fault *fault; /* tells whose stack was not enough; NULL: nobody does */
     struct vp *vp; /* (nrank) */
+    struct vp_extra *extra; /* (nrank) of its ranks; NULL: none */
     int nrank, nstage, nfinished;
     struct software_cost software;
     struct node_cost node_cost;

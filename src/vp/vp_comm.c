@@ -314,7 +314,7 @@ static inline void compute(struct vp *v, sim_ps cost, const struct work *work)
     const struct world *w = v->world;
     sim_ps begin = v->clock;
     if (w->noisy) {
-        double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->noise);
+        double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->extra->noise);
         cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
     if (__builtin_expect(w->balanced != NULL, 0)) cost = vp_balance_cost(v, cost);

@@ -58,9 +58,13 @@ void world_deliver(void *context, struct net_message *m)
     else world_arrived(own);
 }
 
-/* Arrays of all ranks; fresh memory costs nothing until it is used. */
+/* Arrays of all ranks; fresh memory costs nothing until it is used. Threads that make their ranks
+ * take nothing from the memory that they share. */
 void world_make_tables(struct world *w)
 {
+    const struct software_spec *s = &w->machine->software;
+    const bool more = w->noisy || s->kernel_server || s->offload != OFFLOAD_HANDSHAKES;
+    w->extra = more ? TAKE(w->scratch, w->nrank, struct vp_extra) : NULL;
     /* One row more than stages: "end" takes the idle time until the last rank is done. */
     const int row = w->nstage + 1;
     w->result->stage = TAKE(w->arena, size_product(w->nrank, row), struct stage_time);

@@ -21,7 +21,8 @@ void world_deliver(void *context, struct net_message *m);
  * error of net_create. */
 bool world_make_network(struct world *w, bool links, struct err *e);
 
-/* world_make_tables: the arrays of w->result for its ranks, from w->arena. */
+/* world_make_tables: w->extra where the machine asks for it, and the arrays of w->result for its
+ * ranks, from w->arena. */
 void world_make_tables(struct world *w);
 
 /* world_name_stages: the stages of a result, and "end" behind them. */
