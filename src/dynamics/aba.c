@@ -116,7 +116,7 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
  * The body alone: its own inertia, P less the loads (1.10). */
 static void start(const struct dynamics *d, int i, bool moving, struct articulated *b)
 {
-    sym6_from_inertia(&b->inertia, &d->body[i].inertia);
+    sym6_from_inertia(&b->inertia, &d->body[i].mass->inertia);
     screw_zero(b->p);
     if (moving && !d->at_rest) body_gyro(&d->body[i], d->v + 6 * i, b->p);
     if (d->load) screw_sub(b->p, d->load + 6 * i);

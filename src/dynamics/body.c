@@ -2,6 +2,8 @@
  * springs. */
 #include "dynamics/body.h"
 
+#include <string.h>
+
 #include "dynamics/body_constants.h"
 
 /* One rounding a number: what quad precision holds is exact as far as double is concerned. */
@@ -12,11 +14,12 @@ static void round_to(real *y, const quad *x, int n)
 
 /* Inertia about both points: the bias force of a distant origin is computed about the centre of
  * mass. */
-static void make_inertia(const struct model *m, int i, struct body *b)
+static const struct body_mass *make_mass(const struct model *m, int i, struct arena *a)
 {
     struct body_constants c;
+    struct body_mass *b = TAKE(a, 1, struct body_mass);
     body_constants_inertia(m, i, &c);
-    b->m = b->inertia.m = REAL(m->body[i].mass);
+    b->inertia.m = REAL(m->body[i].mass);
     round_to(b->s, c.s, 3);
     round_to(b->jc, c.jc, 6);
     round_to(b->inertia.ms, c.ms, 3);
@@ -24,25 +27,31 @@ static void make_inertia(const struct model *m, int i, struct body *b)
     round_to(b->phi.a, c.phi_a, 6);
     round_to(b->phi.b, c.phi_b, 9);
     round_to(b->phi.c, c.phi_c, 6);
+    return b;
 }
 
-/* Frames, own axes, pitch, spring. */
-static void make_frames(const struct model *m, int i, struct body *b)
+/* Frames, own axes, pitch, spring. On entry *b has the details of the body before, or NULL: they
+ * stay where they are the same to the bit. */
+static void make_frames(const struct model *m, int i, struct body *b, struct arena *a)
 {
-    const struct body_def *def = &m->body[i];
     struct body_constants c;
+    struct body_details own;
     body_constants_place(m, i, &c);
     /* Only some bodies are turned: the others' wrenches are taken as they are. */
     b->turned = c.turned;
     round_to(b->tree.r, c.tree_r, 9);
     round_to(b->tree.p, c.tree_p, 3);
-    round_to(b->user, c.user, 9);
-    round_to(b->slide, c.slide, 9);
-    round_to(&b->unit, &c.unit, 1);
-    b->pitch = REAL(def->pitch);
-    body_springs(m, i, b);
+    round_to(own.user, c.user, 9);
+    round_to(own.slide, c.slide, 9);
+    round_to(&own.unit, &c.unit, 1);
+    own.pitch = REAL(m->body[i].pitch);
+    b->has_spring = joint_springs(m, i, &own.spring);
     /* The rate of a helical joint is u = q' / unit; unit is 1 for all others. */
-    b->rate_stiffness *= b->unit;
+    own.spring.rate_stiffness *= own.unit;
+    if (b->details && memcmp(b->details, &own, sizeof own) == 0) return;
+    struct body_details *details = TAKE(a, 1, struct body_details);
+    *details = own;
+    b->details = details;
 }
 
 /* Whether bodies i and j have the same inertia, in frames turned alike; whether all else is the
@@ -65,8 +74,8 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
     struct body *b = TAKE(a, m->nbody, struct body);
     for (int i = m->first; i < m->end; i++) {
         if (i > m->first) b[i] = b[i - 1];
-        if (i == m->first || !same_inertia(m, i - 1, i)) make_inertia(m, i, &b[i]);
-        if (i == m->first || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i]);
+        if (i == m->first || !same_inertia(m, i - 1, i)) b[i].mass = make_mass(m, i, a);
+        if (i == m->first || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i], a);
         body_seat(m, i, &b[i]);
     }
     return b;
@@ -83,12 +92,13 @@ void base_motion(const struct model *m, const struct state *s, real *a)
 void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const real *s = b->mass->s;
     /* [U, s~; 0, U] and diag(Jc, m U): the inertia about the origin as a product */
     for (int i = 0; i < 6; i++) shift[7 * i] = REAL(1);
-    shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
-    shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
-    for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->jc[at[i]];
-    for (int i = 3; i < 6; i++) about[7 * i] = b->m;
+    shift[4] = -s[2], shift[5] = s[1], shift[9] = s[2];
+    shift[11] = -s[0], shift[15] = -s[1], shift[16] = s[0];
+    for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->mass->jc[at[i]];
+    for (int i = 3; i < 6; i++) about[7 * i] = b->mass->inertia.m;
 }
 
 /* The wrench acts at the user's origin, which is also the internal one. */
@@ -100,6 +110,6 @@ void body_load(const struct body *b, const double *fext, real *f)
     for (int i = 0; i < 3; i++) f[i] = REAL(fext[3 + i]), f[3 + i] = REAL(fext[i]);
     /* and in user axes */
     if (!b->turned) return;
-    mat3_mul_vec_transposed(f, b->user, f);
-    mat3_mul_vec_transposed(f + 3, b->user, f + 3);
+    mat3_mul_vec_transposed(f, b->details->user, f);
+    mat3_mul_vec_transposed(f + 3, b->details->user, f + 3);
 }

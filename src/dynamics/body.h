@@ -13,6 +13,25 @@
 #include "dynamics/body_calls.h"
 #include "linalg/inertia.h"
 
+/* What a body weighs. */
+struct body_mass {
+    real s[3];              /* centre of mass from the origin */
+    real jc[6];             /* inertia about the centre of mass */
+    struct inertia inertia; /* about the origin; the mass */
+    struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
+};
+
+/* What few joints ask for. */
+struct body_details {
+    real pitch, unit; /* JOINT_PITCH: advance per radian and 1 / sqrt(1 + pitch^2) */
+    real user[9];     /* user's body axes = user * internal axes */
+    /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
+    real slide[9];
+    struct joint_spring spring;
+};
+
+/* Chains have a body for each of a million ranks, most of them alike: these share what they
+ * weigh and their details. */
 struct body {
     int parent;
     enum model_joint joint;
@@ -20,17 +39,15 @@ struct body {
     int q_at, u_at;         /* first of each in the model's arrays */
     bool has_spring, turned;/* turned: the internal frame differs from the user's */
     struct xform tree;      /* (E, t): joint frame -> parent's body frame, internal axes */
-    real pitch, unit;       /* JOINT_PITCH: advance per radian and 1 / sqrt(1 + pitch^2) */
-    real m, s[3];           /* mass; centre of mass from the origin */
-    real jc[6];             /* inertia about the centre of mass */
-    struct inertia inertia; /* about the origin */
-    struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
-    real user[9];           /* user's body axes = user * internal axes */
-    /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
-    real slide[9];
-    real stiffness, rest, damping;
-    real rate_stiffness; /* k q' / u: what the spring's force loses in time for each u */
+    const struct body_mass *mass;
+    const struct body_details *details;
 };
+
+/* body_spring_of: what body_spring computes with; zeros where there is none. */
+static inline const struct joint_spring *body_spring_of(const struct body *b)
+{
+    return &b->details->spring;
+}
 
 /* joint_pick: the unit vectors that are H's and W's columns for a joint type (6); NULL: they are
  * none. */
@@ -43,24 +60,26 @@ static inline void body_gyro(const struct body *b, const real *w, real *f)
 {
     /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs
      * no digits. */
+    const struct body_mass *mass = b->mass;
     real t[3];
-    vec3_cross(t, w, b->s);
+    vec3_cross(t, w, mass->s);
     vec3_cross(t, w, t);
-    vec3_scale(f + 3, b->m, t);
-    sym3_mul_vec(t, b->jc, w);
+    vec3_scale(f + 3, mass->inertia.m, t);
+    sym3_mul_vec(t, mass->jc, w);
     vec3_cross(f, w, t);
-    vec3_cross_add(f, b->s, f + 3);
+    vec3_cross_add(f, mass->s, f + 3);
 }
 
 /* body_force: f = I a (6) for the classical acceleration a; BODY_FORCE_FLOP. */
 static inline void body_force(const struct body *b, const real *a, real *f)
 {
+    const struct body_mass *mass = b->mass;
     real t[3];
     vec3_copy(t, a + 3);
-    vec3_cross_add(t, a, b->s);
-    vec3_scale(f + 3, b->m, t);
-    sym3_mul_vec(f, b->jc, a);
-    vec3_cross_add(f, b->s, f + 3);
+    vec3_cross_add(t, a, mass->s);
+    vec3_scale(f + 3, mass->inertia.m, t);
+    sym3_mul_vec(f, mass->jc, a);
+    vec3_cross_add(f, mass->s, f + 3);
 }
 
 /* body_accelerate: a = Phi f (6); the body must have a Phi (model.has_phi). body_phi: Phi as a full
@@ -72,9 +91,9 @@ enum {
 };
 static inline void body_accelerate(const struct body *b, const real *f, real *a)
 {
-    sym6_mul(a, &b->phi, f);
+    sym6_mul(a, &b->mass->phi, f);
 }
-static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
+static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->mass->phi); }
 
 /* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about
  * shift^T is I. */

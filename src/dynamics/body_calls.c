@@ -53,14 +53,14 @@ void body_seat(const struct model *m, int i, struct body *b)
 }
 
 /* Given in the model's own units; rounded once, as all constants are. */
-void body_springs(const struct model *m, int i, struct body *b)
+bool joint_springs(const struct model *m, int i, struct joint_spring *s)
 {
     const struct body_def *def = &m->body[i];
-    b->has_spring = def->stiffness != 0 || def->damping != 0;
-    b->stiffness = REAL(def->stiffness);
-    b->rate_stiffness = b->stiffness; /* q' = u */
-    b->rest = REAL(def->rest);
-    b->damping = REAL(def->damping);
+    s->stiffness = REAL(def->stiffness);
+    s->rate_stiffness = s->stiffness; /* q' = u */
+    s->rest = REAL(def->rest);
+    s->damping = REAL(def->damping);
+    return def->stiffness != 0 || def->damping != 0;
 }
 
 /* h = H u = [w_J; v_J]. */
@@ -73,5 +73,7 @@ void body_rate(const struct body_pose *pose, const real *u, real *h)
 /* tau -= k (q - q_0) + c u. */
 void body_spring(const struct body *b, const real *q, const real *u, real *tau)
 {
-    if (b->has_spring) tau[0] -= b->stiffness * (q[0] - b->rest) + b->damping * u[0];
+    if (!b->has_spring) return;
+    const struct joint_spring *s = body_spring_of(b);
+    tau[0] -= s->stiffness * (q[0] - s->rest) + s->damping * u[0];
 }

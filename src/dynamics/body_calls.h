@@ -16,6 +16,12 @@
 
 struct body;
 
+/* A joint's spring and damper; zeros where there are none. */
+struct joint_spring {
+    real stiffness, rest, damping;
+    real rate_stiffness; /* k q' / u: what the spring's force loses in time for each u */
+};
+
 /* A body's configuration: its transform to the parent and its subspaces. */
 struct body_pose {
     struct xform x;
@@ -53,10 +59,10 @@ bool bodies_alike(const struct model *m, int i, int j);
 bool bodies_weigh_alike(const struct model *m, int i, int j);
 bool bodies_hang_alike(const struct model *m, int i, int j);
 
-/* body_seat: where body i of m hangs, which differs between otherwise equal bodies; body_springs:
- * its spring and damper. */
+/* body_seat: where body i of m hangs, which differs between otherwise equal bodies; joint_springs:
+ * its spring and damper. False: it has none. */
 void body_seat(const struct model *m, int i, struct body *b);
-void body_springs(const struct model *m, int i, struct body *b);
+bool joint_springs(const struct model *m, int i, struct joint_spring *s);
 
 /* base_motion: acceleration of the base minus gravity (SPACE). */
 void base_motion(const struct model *m, const struct state *s, real *a);

@@ -13,7 +13,7 @@ static int child_count(const struct dynamics *d, int i)
  * Phi of a body with several children is lowered by each child that is eliminated. */
 static const struct sym6 *phi_of(const struct dynamics *d, const struct cfa_system *s, int i)
 {
-    return child_count(d, i) > 1 ? &s->phi[i] : &d->body[i].phi;
+    return child_count(d, i) > 1 ? &s->phi[i] : &d->body[i].mass->phi;
 }
 
 /* Whether column k of W is a pure rotation axis among unit columns: then X W = [r_k; 0]. */
@@ -170,9 +170,9 @@ bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
     s->phi = d->model->is_chain ? NULL : TAKE(d->arena, d->nbody, struct sym6);
     for (int i = 0; i < d->nbody; i++) {
         if (child_count(d, i) > 1)
-            s->phi[i] = d->body[i].phi;
+            s->phi[i] = d->body[i].mass->phi;
         else
-            project(&d->pose[i].s, &d->body[i].phi, s->row[i].g, w);
+            project(&d->pose[i].s, &d->body[i].mass->phi, s->row[i].g, w);
     }
     /* Children have higher numbers than their parents: no fill on this way (physics 6.1). */
     for (int i = d->nbody - 1; i >= 0; i--)

@@ -9,7 +9,7 @@
  * A composite is all that hangs at a joint, taken as one rigid body (physics 2.3). */
 static void composites(const struct dynamics *d, struct inertia *c)
 {
-    for (int i = 0; i < d->nbody; i++) c[i] = d->body[i].inertia;
+    for (int i = 0; i < d->nbody; i++) c[i] = d->body[i].mass->inertia;
     for (int i = d->nbody - 1; i >= 0; i--) {
         /* Leaves first, so that each is complete when it is handed down. */
         struct inertia moved;

@@ -50,7 +50,7 @@ static void outward(struct dynamics *d, const real *q, struct axes *a)
         real z[3] = {w->r[2], w->r[5], w->r[8]}, v[3];
         vec3_cross(v, w->p, z);
         for (int k = 0; k < 3; k++) a->s[k][i] = z[k], a->s[3 + k][i] = v[k];
-        a->composite[i] = d->body[i].inertia;
+        a->composite[i] = d->body[i].mass->inertia;
     }
 }
 

@@ -166,7 +166,7 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
     rnea_full(p.d, p.q, p.u, p.ud, tau, NULL);
     for (int i = 0; i < m->nbody; i++)
         for (int k = 0; k < 3; k++) {
-            const real *turn = p.d->body[i].user + 3 * k, *moment = p.d->f + 6 * i,
+            const real *turn = p.d->body[i].details->user + 3 * k, *moment = p.d->f + 6 * i,
                        *force = moment + 3;
             wrench[6 * i + k] = (double)vec3_dot(turn, force);
             wrench[6 * i + 3 + k] = (double)vec3_dot(turn, moment);

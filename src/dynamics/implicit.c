@@ -101,7 +101,7 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
     work_count_springs(d, &own);
     for (int i = 0; i < d->nbody; i++) {
         const struct body *body = &d->body[i];
-        sym6_from_inertia(&b[i].inertia, &body->inertia);
+        sym6_from_inertia(&b[i].inertia, &body->mass->inertia);
         body_gyro(body, d->v + 6 * i, b[i].p);
         if (d->load) screw_sub(b[i].p, d->load + 6 * i);
         /* physics (9.0): spring and damper at the end of the step. */

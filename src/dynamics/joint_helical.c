@@ -9,9 +9,9 @@ static void subspace(const struct body *b, const real *q, struct subspace *s)
     (void)q;
     for (int k = 0; k < 36; k++) s->col[k] = REAL(0);
     /* the columns of the angle and of the advance along it mix; both have length 1 */
-    const real advance = b->unit * b->pitch;
-    s->col[2] = b->unit, s->col[5] = advance;
-    s->col[6 + 2] = -advance, s->col[6 + 5] = b->unit;
+    const real advance = b->details->unit * b->details->pitch;
+    s->col[2] = b->details->unit, s->col[5] = advance;
+    s->col[6 + 2] = -advance, s->col[6 + 5] = b->details->unit;
     /* nothing else moves */
     for (int k = 0; k < 4; k++) s->col[6 * (2 + k) + others[k]] = REAL(1);
 }
@@ -20,7 +20,7 @@ static void subspace(const struct body *b, const real *q, struct subspace *s)
 static void place(const struct body *b, const real *q, struct body_pose *pose)
 {
     turn_about_z(b->tree.r, q[0], pose->x.r);
-    shift_along_z(&b->tree, b->pitch * q[0], pose->x.p);
+    shift_along_z(&b->tree, b->details->pitch * q[0], pose->x.p);
     subspace(b, q, &pose->s);
 }
 
@@ -28,7 +28,7 @@ static void place(const struct body *b, const real *q, struct body_pose *pose)
 static void qdot(const struct body *b, const real *q, const real *u, real *qd)
 {
     (void)q;
-    qd[0] = b->unit * u[0];
+    qd[0] = b->details->unit * u[0];
 }
 
 /* place: 2 flops for pitch q besides; rate and step: a dense column and the unit length. */

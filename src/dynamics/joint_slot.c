@@ -8,8 +8,8 @@ enum { SLIDE = 3, SLIDES = 9 };
 static void slide_by(const struct body *b, const real *x, real *d)
 {
     for (int i = 0; i < 3; i++) {
-        d[i] = x[0] * b->slide[i];
-        if (b->d > 4) d[i] += x[1] * b->slide[3 + i];
+        d[i] = x[0] * b->details->slide[i];
+        if (b->d > 4) d[i] += x[1] * b->details->slide[3 + i];
     }
 }
 
@@ -21,7 +21,7 @@ static void columns(const struct body *b, const real *rotation, struct subspace 
     for (int k = 0; k < 3; k++) {
         s->col[6 * k + k] = REAL(1); /* any turn */
         /* the free directions come first, then those of W */
-        mat3_mul_vec_transposed(s->col + 6 * (3 + k) + 3, rotation, b->slide + 3 * k);
+        mat3_mul_vec_transposed(s->col + 6 * (3 + k) + 3, rotation, b->details->slide + 3 * k);
     }
 }
 

@@ -84,12 +84,12 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
     real a[6];
     if (body < 0) return 0;
     if (d->model->has_phi) {
-        sym6_mul(a, &d->body[body].phi, column);
+        sym6_mul(a, &d->body[body].mass->phi, column);
         w->flop += SYM6_MUL_FLOP + SCREW_DOT_FLOP;
         return screw_dot(a, column);
     }
     /* Point masses have no Phi; their mass still gives the right order of magnitude. */
-    real m = d->body[body].m;
+    real m = d->body[body].mass->inertia.m;
     if (!(m > 0)) return 0;
     w->flop += VEC3_DOT_FLOP;
     w->div++;

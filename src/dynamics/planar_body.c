@@ -23,7 +23,7 @@ static void make_frames(const struct model *m, int i, const quad *normal, struct
     b->flipped =
         (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) &&
         along < 0;
-    body_springs(m, i, b);
+    b->has_spring = joint_springs(m, i, &b->spring);
 }
 
 /* About the normal alone: all that acts of a body in its plane (physics 1.5). */

@@ -24,9 +24,14 @@ struct body {
     real jc, jo;
     real per_m, per_jc;  /* their inverses, zero when there are none */
     real frame[9];       /* rows: normal, x, y in the user's body axes */
-    real stiffness, rest, damping;
-    real rate_stiffness; /* k q' / u: what the spring's force loses in time for each u */
+    struct joint_spring spring;
 };
+
+/* body_spring_of: as in body.h. */
+static inline const struct joint_spring *body_spring_of(const struct body *b)
+{
+    return &b->spring;
+}
 
 /* body_gyro: P (3) from the body's own velocity: the normal is a principal axis as far as work is
  * concerned, so only the centre of mass is pulled, and not about the origin. */

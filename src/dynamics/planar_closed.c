@@ -185,9 +185,10 @@ bool planar_forward(const struct model *model, const struct state *s, struct are
         planar_start(&x, i, w);
         if (!b->has_spring) continue;
         /* -k (q - q0) - c u; only joints of one freedom have springs (model.h). */
+        const struct joint_spring *k = body_spring_of(b);
         const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
         tau[b->u_at] =
-            (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
+            (double)((real)tau[b->u_at] - (k->stiffness * (q - k->rest) + k->damping * u));
         w->flop += BODY_SPRING_FLOP;
     }
     const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w)

@@ -8,11 +8,11 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
     struct revolute *out = TAKE(a, m->nbody, struct revolute);
     for (int i = m->first; i < m->end; i++) {
         struct revolute *r = &out[i];
-        const real *j = b[i].jc, half = REAL(0.5);
+        const real *j = b[i].mass->jc, half = REAL(0.5);
         for (int k = 0; k < 9; k++) r->e[k] = b[i].tree.r[k];
         vec3_copy(r->t, b[i].tree.p);
-        r->m = b[i].m;
-        vec3_copy(r->s, b[i].s);
+        r->m = b[i].mass->inertia.m;
+        vec3_copy(r->s, b[i].mass->s);
         /* S = tr(J)/2 U - J: the products of inertia change sign. */
         r->second[0] = half * ((j[3] - j[0]) + j[5]);
         r->second[3] = half * ((j[0] - j[3]) + j[5]);

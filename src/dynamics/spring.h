@@ -8,14 +8,15 @@
 /* spring_resistance: s of a body's joint for steps of h; 0: its forces are explicit. */
 static inline real spring_resistance(const struct body *b, real h)
 {
-    return b->has_spring ? h * (b->damping + h * b->rate_stiffness) : 0;
+    const struct joint_spring *s = body_spring_of(b);
+    return b->has_spring ? h * (s->damping + h * s->rate_stiffness) : 0;
 }
 
 /* spring_force: tau_0 for tau (d), to which body_spring has added the forces at the begin of the
  * step. */
 static inline void spring_force(const struct body *b, real h, const real *u, real *tau)
 {
-    if (b->has_spring && h > 0) tau[0] -= h * b->rate_stiffness * u[0];
+    if (b->has_spring && h > 0) tau[0] -= h * body_spring_of(b)->rate_stiffness * u[0];
 }
 
 #endif

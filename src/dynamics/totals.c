@@ -7,7 +7,8 @@
 static void add_body(const struct dynamics *d, int i, const struct xform *x,
                      struct motion_totals *t)
 {
-    const struct body *b = &d->body[i];
+    const struct body_mass *b = d->body[i].mass;
+    const real m = b->inertia.m;
     const real *v = d->v + 6 * i, half = (real)0.5;
     real vc[3], spin[3], linear[3], c[3];
     /* Velocity of the centre of mass, and spin about it: kinetic energy without a distant
@@ -15,20 +16,20 @@ static void add_body(const struct dynamics *d, int i, const struct xform *x,
     vec3_copy(vc, v + 3);
     vec3_cross_add(vc, v, b->s);
     sym3_mul_vec(spin, b->jc, v);
-    t->kinetic += half * (b->m * vec3_dot(vc, vc) + vec3_dot(v, spin));
+    t->kinetic += half * (m * vec3_dot(vc, vc) + vec3_dot(v, spin));
     /* In the base's frame: place, then linear and angular momentum about the base's origin. */
     mat3_mul_vec(c, x->r, b->s);
     vec3_add(c, x->p);
-    for (int k = 0; k < 3; k++) t->potential -= b->m * (real)d->model->gravity[k] * c[k];
-    vec3_scale(linear, b->m, vc);
+    for (int k = 0; k < 3; k++) t->potential -= m * (real)d->model->gravity[k] * c[k];
+    vec3_scale(linear, m, vc);
     mat3_mul_vec(linear, x->r, linear);
     mat3_mul_vec(spin, x->r, spin);
     vec3_add(t->linear, linear);
     /* About the base's origin: spin plus c x m v. */
     vec3_add(t->angular, spin);
     vec3_cross_add(t->angular, c, linear);
-    t->mass += b->m;
-    for (int k = 0; k < 3; k++) t->com[k] += b->m * c[k];
+    t->mass += m;
+    for (int k = 0; k < 3; k++) t->com[k] += m * c[k];
 }
 
 /* All bodies at q in motion u: poses, velocities and bias in d; where they are in the base's
@@ -52,8 +53,8 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
         add_body(d, i, &x[i], t);
         /* Springs store energy, dampers do not. k (q - rest)^2 / 2, where u = q'; the rate of a
          * helical joint is u = q' / unit, and so is the power of its spring. */
-        real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
-        t->potential += b->stiffness * stretch * stretch / 2 / b->unit;
+        real stretch = b->has_spring ? q[b->q_at] - b->details->spring.rest : 0;
+        t->potential += b->details->spring.stiffness * stretch * stretch / 2 / b->details->unit;
     }
     /* Massless systems have no centre. */
     for (int k = 0; k < 3 && t->mass > 0; k++) t->com[k] /= t->mass;
@@ -78,7 +79,7 @@ void forward_kinematics(struct dynamics *d, const real *q, const real *u, const 
         screw_add(a, carried);
         struct body_motion *o = &out[i];
         /* From internal to user axes, and everything else into the base's. */
-        mat3_mul_transposed(o->r, x[i].r, b->user);
+        mat3_mul_transposed(o->r, x[i].r, b->details->user);
         vec3_copy(o->p, x[i].p);
         mat3_mul_vec(o->w, x[i].r, d->v + 6 * i);
         mat3_mul_vec(o->v, x[i].r, d->v + 6 * i + 3);

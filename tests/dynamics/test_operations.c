@@ -195,6 +195,36 @@ static void bodies_execute_what_they_declare(void **state)
     }
 }
 
+#if SPACE == 6
+static void bodies_share_what_is_alike(void **state)
+{
+    enum { OF_RODS = 8 };
+    (void)state;
+    /* Rods of one kind on axes that are twisted against each other. */
+    struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, OF_RODS, JOINT_REVOLUTE, 1);
+    spec.inertia = INERTIA_UNIFORM;
+    struct scene s = scene_of(&spec);
+    const struct body *b = bodies_make(s.model, s.a);
+    for (int i = 1; i < OF_RODS; i++) {
+        assert_memory_not_equal(&b[i].tree, &b[0].tree, sizeof b->tree);
+        assert_ptr_equal(b[i].mass, b[0].mass);
+        assert_ptr_equal(b[i].details, b[0].details);
+    }
+    scene_end(&s);
+    spec.inertia = INERTIA_RANDOM;
+    spec.stiffness = 1; /* springs rest where the scene starts */
+    s = scene_of(&spec);
+    b = bodies_make(s.model, s.a);
+    for (int i = 1; i < OF_RODS; i++) {
+        assert_ptr_not_equal(b[i].mass, b[i - 1].mass);
+        assert_ptr_not_equal(b[i].details, b[i - 1].details);
+        assert_true(b[i].mass->inertia.m == (real)s.model->body[i].mass);
+        assert_true(b[i].details->spring.rest == (real)s.model->body[i].rest);
+    }
+    scene_end(&s);
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -204,6 +234,9 @@ int main(void)
         cmocka_unit_test(small_matrices_execute_what_they_declare),
 #endif
         cmocka_unit_test(bodies_execute_what_they_declare),
+#if SPACE == 6
+        cmocka_unit_test(bodies_share_what_is_alike),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
