@@ -129,5 +129,5 @@ bool hosts_agree(const struct hosts *h, int tag, bool ok, struct err *e)
     if (h->rank == 0 && !ok) return false;
     err_clear(e);
     return heard ? err_set(e, (enum err_kind)v.kind, "%s", v.text)
-                 : err_set(e, ERR_INTERNAL, "a process of the job has ended, or does not answer");
+                 : err_set(e, ERR_INTERNAL, HOSTS_SILENT);
 }

@@ -4,6 +4,9 @@
 
 #include "hosts/hosts.h"
 
+/* What is told of a process that sends nothing more. */
+#define HOSTS_SILENT "a process of the job has ended, or does not answer"
+
 /* hosts_copy_out: send `bytes` of `data` to process `to`; hosts_copy_in: receive as many from
  * `from`, which must send as many. Whoever waits sleeps in between: MPI's own waiting would take a
  * processor. */
@@ -22,8 +25,7 @@ bool hosts_all_largest(const struct hosts *h, int tag, int64_t *value, int n);
 
 /* hosts_agree: whether all processes can go on; called by all. `ok`: this one can, else *e says why
  * it cannot. False: one cannot, and *e tells on all of them why, in the words of the first of them
- * (in front of those of another process than 0 stands its number), or ERR_INTERNAL where one does
- * not answer. */
+ * (behind its number if that is not 0), or HOSTS_SILENT (ERR_INTERNAL). */
 bool hosts_agree(const struct hosts *h, int tag, bool ok, struct err *e);
 
 #endif

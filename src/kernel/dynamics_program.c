@@ -42,8 +42,8 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
 /* Host memory of a body, beside the ranks' [B]: the model; then, when the ranks are gone,
  * references in other precisions and serial codes. Peaks of runs with 4,096 to 65,536 bodies on 16
  * to 1,024 ranks (host_peak_bytes), less the rest, of chains whose bodies weigh alike: 320 bytes
- * more where they do not. The last two are what no run was seen to need less
- * than, with the ranks' part. */
+ * more where they do not. The last two are what no run was seen to need less than, with the ranks'
+ * part. */
 enum {
     MODEL_BODY_BYTES = 780,
     INVERSE_BODY_BYTES = 560,

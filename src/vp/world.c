@@ -13,6 +13,7 @@
 #include "base/digest.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "hosts/hosts_copy.h"
 #include "machine/node_use.h"
 #include "sim/stack_fault.h"
 #include "vp/arrivals.h"
@@ -303,8 +304,7 @@ static void end_shared(struct world *w)
     if (end != SHARED_DEADLOCK) forget_parts(w);
     r->status = end == SHARED_DEADLOCK ? RUN_DEADLOCK : RUN_FAILED;
     r->job_broken = end == SHARED_BROKEN;
-    if (r->job_broken)
-        text_copy(r->text, sizeof r->text, "a process of the job has ended, or does not answer");
+    if (r->job_broken) text_copy(r->text, sizeof r->text, HOSTS_SILENT);
 }
 
 /* Host time covers ranks and events, not building. */
