@@ -81,14 +81,6 @@ figures() {
     done)
 }
 
-# figures_that_name WORD: those whose query or script has it: no other reads a column of that name.
-figures_that_name() {
-    local figure
-    for figure in $(figures); do
-        ! grep -qw -- "$1" "$MIMDSIM_DATA/plots/$figure".{sql,gp} || echo "$figure"
-    done
-}
-
 # every_figure: all.db, a database with rows for every figure.
 every_figure() {
     if [ -e "$BATS_FILE_TMPDIR/all.db" ]; then cp "$BATS_FILE_TMPDIR/all.db" .; return; fi
@@ -152,16 +144,14 @@ add_to() {
 # svg_alone: the PNG of a figure comes from the same commands; where many figures are drawn their SVG tells as much.
 svg_alone() { export MIMDSIM_GNUPLOT=$MIMDSIM_SRCDIR/tests/support/gnuplot-svg.sh; }
 
-# draw FIGURES STATUS...: each of those figures of bad.db ends with one of STATUS; no command of a text has run, no picture is
-# active.
-draw() {
-    local figure figures=$1
-    shift
+# draw_all STATUS...: every figure of bad.db ends with one of STATUS; no command of a text has run, no picture is active.
+draw_all() {
+    local figure
     rm -rf drawn
     if [ "$*" = 0 ]; then
-        # shellcheck disable=SC2086 # one word a figure; the first that fails ends it, and is told
-        works mimdsim plot bad.db $figures --dir drawn
-    else for figure in $figures; do
+        # shellcheck disable=SC2046 # one word a figure; the first that fails ends it, and is told
+        works mimdsim plot bad.db $(figures) --dir drawn
+    else for figure in $(figures); do
         run --separate-stderr -- mimdsim plot bad.db "$figure" --dir drawn
         case " $* " in *" $status "*) ;; *) echo "$figure"; show; return 1 ;; esac
     done; fi
@@ -184,7 +174,7 @@ draw() {
     shown="$shown run.machine stage.name claim.id claim.statement ladder.method stability.algorithm"
     [ "$(echo $shown | wc -w)" -gt 30 ]
     cp all.db bad.db
-    draw "$(figures)" 0
+    draw_all 0
     pictures=$(find drawn -name '*.svg' | wc -l)
     # Quotes and substitutions behind each other: each pair of quotes is whole within the other kind, so that a way out of
     # either is taken. gnuplot itself has no sanitizers: for them control characters and formats are enough.
@@ -203,7 +193,7 @@ draw() {
         esac
         } >text
         add_to text "$shown"
-        draw "$(figures)" 0
+        draw_all 0
         [ "$(find drawn -name '*.svg' | wc -l)" -eq "$pictures" ]
         svg_alone # the first text has been drawn both ways
     done
@@ -215,18 +205,15 @@ draw() {
     svg_alone
     printf '"; system("touch PWNED1"); `touch PWNED2` $(touch PWNED3) \x27; system("touch PWNED4") #\x27 @x {/x} %%s%%n\\ |touch PWNED5 <x>\nsystem("touch PWNED6")' >text
     columns='run.kernel run.topology run.level run.formulation run.solver baseline.name setting.value check_point.quantity
-             claim.variant'
+             claim.variant build.version'
     if sanitized; then columns='setting.value'; fi
     for column in $columns; do
         add_to text "$column"
-        draw "$(figures_that_name "${column#*.}")" 0 65 66
+        draw_all 0 65 66
     done
-    # every figure is signed with the version
-    add_to text build.version
-    draw fig5 0 65 66
     # all at once: most figures find none of their rows
     add_to text "$(text_columns)"
-    draw "$(figures)" 0 65 66 69
+    draw_all 0 65 66 69
     works mimdsim report bad.db --dir drawn
     # a database whose words are none of ours is not read at all
     for column in $(word_columns); do
