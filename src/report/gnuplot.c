@@ -8,9 +8,9 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,28 +27,46 @@ static const char *program(void)
     return named && *named ? named : "gnuplot";
 }
 
-/* What the child does before it becomes gnuplot: 0, or an errno where there is no memory for it. */
-static int prepare(posix_spawn_file_actions_t *actions, const char *work, int complaints)
+/* What the child does before it becomes gnuplot. Returns where it cannot: an errno of exec, or -errno
+ * of what comes before. */
+static int become(const char *work, const char *file, int complaints, pid_t parent)
 {
-    /* No terminal: gnuplot must neither ask nor write to ours. */
-    int code = posix_spawn_file_actions_addopen(actions, 0, "/dev/null", O_RDONLY, 0);
-    if (code == 0) code = posix_spawn_file_actions_addopen(actions, 1, "/dev/null", O_WRONLY, 0);
-    if (code == 0) code = posix_spawn_file_actions_adddup2(actions, complaints, 2);
-    /* In its folder, as scripts name their files without a path. */
-    return code ? code : posix_spawn_file_actions_addchdir_np(actions, work);
+    /* It ends with the process that wants the picture, whatever ends that one. */
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) return -ESRCH;
+    /* No terminal: gnuplot must neither ask nor write to ours. In its folder, as scripts name their
+     * files without a path. */
+    const int nothing = open("/dev/null", O_RDWR);
+    if (nothing < 0 || dup2(nothing, 0) < 0 || dup2(nothing, 1) < 0 || dup2(complaints, 2) < 0 ||
+        chdir(work) != 0)
+        return -errno;
+    /* -d: no startup files of the user, which could change every figure. */
+    execvp(program(), (char *const[]){(char *)program(), "-d", (char *)file, NULL});
+    return errno;
 }
 
-/* Start it in folder `work` with its complaints going into `complaints`. Returns 0 or an errno. */
+/* Start it in folder `work` with its complaints going into `complaints`. Returns 0, or as become(),
+ * whose number comes through a pipe that exec closes. */
 static int start(const char *work, const char *file, int complaints, pid_t *child)
 {
-    /* -d: no startup files of the user, which could change every figure. */
-    char *const arguments[] = {(char *)program(), "-d", (char *)file, NULL};
-    posix_spawn_file_actions_t actions;
-    int code = posix_spawn_file_actions_init(&actions);
-    if (code != 0) return code;
-    code = prepare(&actions, work, complaints);
-    if (code == 0) code = posix_spawnp(child, program(), &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    int ends[2], code = 0;
+    if (pipe2(ends, O_CLOEXEC) != 0) return -errno;
+    const pid_t parent = getpid();
+    *child = fork();
+    if (*child == 0) {
+        code = become(work, file, complaints, parent);
+        /* Where the parent is gone, nobody reads it. */
+        if (write(ends[1], &code, sizeof code) < 0) _exit(126);
+        _exit(127);
+    }
+    if (*child < 0) code = -errno;
+    close(ends[1]);
+    if (code == 0)
+        while (read(ends[0], &code, sizeof code) < 0 && errno == EINTR) {}
+    close(ends[0]);
+    /* A child that did not become gnuplot has ended. */
+    if (*child > 0 && code != 0)
+        while (waitpid(*child, NULL, 0) < 0 && errno == EINTR) {}
     return code;
 }
 
@@ -103,7 +121,7 @@ static const char *reason(struct text *complaints)
 bool gnuplot_run(const char *work, const char *dir, const char *file, struct err *e)
 {
     int ends[2], status = 0;
-    pid_t child;
+    pid_t child = -1;
     /* O_CLOEXEC: worker processes must not keep the pipe open. */
     if (pipe2(ends, O_CLOEXEC) != 0)
         return err_set(e, ERR_INTERNAL, "no pipe for gnuplot: %s", strerror(errno));
@@ -113,7 +131,9 @@ bool gnuplot_run(const char *work, const char *dir, const char *file, struct err
     /* No gnuplot: the user can still draw, since script and data are complete. */
     if (code != 0) {
         close(ends[0]);
-        if (code == ENOMEM) return err_set(e, ERR_INTERNAL, "no memory to start %s", program());
+        if (code == ENOMEM || code < 0)
+            return err_set(e, ERR_INTERNAL, "%s cannot be started: %s", program(),
+                           strerror(abs(code)));
         return err_set(e, ERR_UNAVAILABLE,
                        "%s: %s; the data and the script are in %s: install gnuplot (Debian: "
                        "gnuplot-nox) and run it there on %s", program(), strerror(code), dir, file);

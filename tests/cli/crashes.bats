@@ -130,6 +130,27 @@ END
     return 1
 }
 
+@test "gnuplot ends with the program that wants its picture" {
+    works mimdsim run pingpong-machines --set machine=t3e-300 -q -o r.db
+    printf '#!/bin/sh\necho $$ >%s/drawing\nexec sleep 60\n' "$PWD" >slow-gnuplot
+    chmod +x slow-gnuplot
+    local signal i drawing
+    for signal in TERM KILL; do
+        rm -f drawing
+        MIMDSIM_GNUPLOT=$PWD/slow-gnuplot "$MIMDSIM" plot r.db pingpong 3>&- &
+        for ((i = 0; i < 100; i++)); do [ ! -s drawing ] || break; sleep 0.1; done
+        drawing=$(cat drawing)
+        kill -0 "$drawing"
+        kill -"$signal" $!
+        for ((i = 0; i < 20; i++)); do
+            readlink "/proc/$drawing/exe" >there || continue 2 # nobody there, or only its status
+            sleep 0.1
+        done
+        kill -9 "$drawing"
+        return 1
+    done
+}
+
 @test "one rank under a debugger, which knows its variables" {
     command -v gdb >there || skip "no gdb"
     made look.c <<'END'
