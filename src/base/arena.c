@@ -1,10 +1,10 @@
 /* arena.c - a bump allocator over mapped blocks.
  *
- * The first block is small and of the heap, which keeps its pages from one arena to the next: most
+ * The first blocks are small and of the heap, which keeps its pages from one arena to the next: most
  * arenas need no more, and to map and fault in pages for each takes longer than what is done in
- * them. Later blocks come from mmap, so a large array costs only the pages that are touched, and
- * fresh pages are zero already: `dirty` remembers how far a block was ever used, and only below it
- * must a new take be cleared by hand. Blocks double in size, so the number of system calls is
+ * them. Later blocks come from mmap, as does one for a single large array, which so costs only the
+ * pages that are touched, and fresh pages are zero already: `dirty` remembers how far a block was
+ * ever used, and only below it must a new take be cleared by hand. Blocks double in size, so the number of system calls is
  * logarithmic in what a run needs. After a release the next block is kept for the next take: a loop
  * around a mark near a block's end does not map and unmap each time round.
  *
@@ -45,9 +45,9 @@ enum { GAP = 64 };
 enum { GAP = 0 };
 #endif
 
-/* ALIGN: a cache line, enough for any type and for vector loads. SMALL_BLOCK: the one of the heap,
- * below malloc's own limit for mapping. Blocks from HUGE_BLOCK on may use
- * large pages; beyond LARGEST_BLOCK they do not double any more. */
+/* ALIGN: a cache line, enough for any type and for vector loads. Blocks below HUGE_BLOCK are of the
+ * heap unless they are made for a few takes; those from there on may use large pages; beyond
+ * LARGEST_BLOCK they do not double any more. */
 enum {
     ALIGN = 64,
     SMALL_BLOCK = 1 << 16,
@@ -60,6 +60,7 @@ enum {
 /* The head of a block lies in its own first bytes; takes start at ALIGN. */
 struct block {
     struct block *below; /* the block filled before this one */
+    bool heap;           /* of the heap, not mapped */
     size_t capacity;     /* bytes of the whole block */
     size_t used;         /* next free offset from the block's start, a multiple of ALIGN */
     size_t dirty;        /* bytes beyond this offset were never handed out: still zero */
@@ -89,7 +90,7 @@ static void block_unmap(struct block *b)
 {
     if (!b) return;
     UNPOISON(b, b->dirty);
-    if (b->capacity == SMALL_BLOCK) {
+    if (b->heap) {
         free(b);
         return;
     }
@@ -109,30 +110,31 @@ void arena_destroy(struct arena *a)
     free(a);
 }
 
-/* block_small: the block of the heap. All of it may have been used before: it is cleared as it is
- * taken. */
-static struct block *block_small(void)
+/* block_of_heap: all of it may have been used before: it is cleared as it is taken. */
+static struct block *block_of_heap(size_t capacity)
 {
-    struct block *b = memory_aligned(ALIGN, SMALL_BLOCK, 1);
-    *b = (struct block){.capacity = SMALL_BLOCK, .used = ALIGN, .dirty = SMALL_BLOCK};
+    struct block *b = memory_aligned(ALIGN, capacity, 1);
+    *b = (struct block){.heap = true, .capacity = capacity, .used = ALIGN, .dirty = capacity};
     return b;
 }
 
 /* block_map: an empty block with room for `size` bytes after its head. */
 static struct block *block_map(struct arena *a, size_t size)
 {
-    const bool small = a->next == SMALL_BLOCK;
-    if (small) a->next = FIRST_BLOCK;
-    if (small && size <= SMALL_BLOCK - ALIGN) return block_small();
+    if (a->next == SMALL_BLOCK) {
+        a->next = FIRST_BLOCK;
+        if (size <= SMALL_BLOCK - ALIGN) return block_of_heap(SMALL_BLOCK);
+    }
     size_t capacity = (ALIGN + size + PAGE - 1) / PAGE * PAGE;
     if (capacity < a->next) capacity = a->next;
     if (a->next < LARGEST_BLOCK) a->next *= 2;
+    /* A block of many takes fills from below; a single large array may stay sparse. */
+    const bool fills = size <= capacity / 8;
+    if ((fills && capacity < HUGE_BLOCK) || capacity <= FIRST_BLOCK) return block_of_heap(capacity);
     struct block *b = mmap(NULL, capacity, PROT_READ | PROT_WRITE,
                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (b == MAP_FAILED) check_memory(capacity);
-    /* A block of many takes fills from below, so large pages only save faults; a single large array
-     * may stay sparse. */
-    if (capacity >= HUGE_BLOCK && size <= capacity / 8) madvise(b, capacity, MADV_HUGEPAGE);
+    if (fills) madvise(b, capacity, MADV_HUGEPAGE);
     ROOT_ADD(b, capacity);
     *b = (struct block){.capacity = capacity, .used = ALIGN, .dirty = ALIGN};
     return b;

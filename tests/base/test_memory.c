@@ -1,0 +1,69 @@
+/* test_memory.c - memory of the heap: what many small takes cost in faults, and that it stays with
+ * the process. */
+#include "config.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+
+enum { PIECES = 1000, PIECE = 4096 };
+
+/* Faults of this process up to now. */
+static long faults(void)
+{
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    return used.ru_minflt;
+}
+
+/* The faults of 4 MB in pieces of a page, each written to; they are free afterwards. */
+static long faults_of_pieces(void)
+{
+    static void *piece[PIECES];
+    const long before = faults();
+    for (int i = 0; i < PIECES; i++) piece[i] = memset(memory_take(1, PIECE), 1, PIECE);
+    const long after = faults();
+    for (int i = 0; i < PIECES; i++) free(piece[i]);
+    return after - before;
+}
+
+/* Whether the system gives large pages to who asks. */
+static bool large_pages_given(void)
+{
+    char said[64] = "";
+    FILE *f = fopen("/sys/kernel/mm/transparent_hugepage/enabled", "r");
+    if (f == NULL) return false;
+    const bool read = fgets(said, sizeof said, f) != NULL;
+    fclose(f);
+    return read && strstr(said, "[never]") == NULL;
+}
+
+static void memory_that_was_free_is_taken_again_without_a_fault(void **state)
+{
+    (void)state;
+    memory_large_pages();
+    const long first = faults_of_pieces(), again = faults_of_pieces();
+    print_message("%d pages: %ld faults, again %ld\n", PIECES, first, again);
+#if defined SANITIZERS || defined THREAD_SANITIZER || !defined __GLIBC__
+    skip(); /* their heap is another */
+#endif
+    assert_true(again < 10);
+    if (large_pages_given()) assert_true(first < PIECES / 4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(memory_that_was_free_is_taken_again_without_a_fault),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
