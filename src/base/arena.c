@@ -1,12 +1,13 @@
 /* arena.c - a bump allocator over mapped blocks.
  *
- * The first blocks are small and of the heap, which keeps its pages from one arena to the next: most
- * arenas need no more, and to map and fault in pages for each takes longer than what is done in
- * them. Later blocks come from mmap, as does one for a single large array, which so costs only the
- * pages that are touched, and fresh pages are zero already: `dirty` remembers how far a block was
- * ever used, and only below it must a new take be cleared by hand. Blocks double in size, so the number of system calls is
- * logarithmic in what a run needs. After a release the next block is kept for the next take: a loop
- * around a mark near a block's end does not map and unmap each time round.
+ * The first blocks are small and of the heap, which keeps its pages from one arena to the next:
+ * most arenas need no more, and to map and fault in pages for each takes longer than what is done
+ * in them. Later blocks come from mmap, as does one for a single large array, which so costs only
+ * the pages that are touched, and fresh pages are zero already: `dirty` remembers how far a block
+ * was ever used, and only below it must a new take be cleared by hand. Blocks double in size, so
+ * the number of system calls is logarithmic in what a run needs. After a release the next block is
+ * kept for the next take: a loop around a mark near a block's end does not map and unmap each time
+ * round.
  *
  * Under the address sanitizer what was released is poisoned and takes are kept apart, so that
  * overruns and uses after release are seen, and the blocks are roots of the leak detector. */

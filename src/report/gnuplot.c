@@ -27,8 +27,8 @@ static const char *program(void)
     return named && *named ? named : "gnuplot";
 }
 
-/* What the child does before it becomes gnuplot. Returns where it cannot: an errno of exec, or -errno
- * of what comes before. */
+/* What the child does before it becomes gnuplot. Returns where it cannot: an errno of exec, or
+ * -errno of what comes before. */
 static int become(const char *work, const char *file, int complaints, pid_t parent)
 {
     /* It ends with the process that wants the picture, whatever ends that one. */
