@@ -44,19 +44,26 @@ static struct code_work code_of(const struct block_counts *counts)
  * Guide for the AMD Zen5 Microarchitecture", 58455, on its op cache). */
 enum { LINE = 64, ENTRY = 6 };
 
+/* The halves of a cycle that `bytes` of a block in one line take. Which line an instruction is in
+ * is not known, but how long they are in the mean. */
+static uint64_t line_halves(uint64_t bytes, uint32_t length, unsigned instructions, bool first)
+{
+    const uint64_t here = (2 * instructions * bytes + length) / (2 * (uint64_t)length);
+    const unsigned entries = (unsigned)(here + ENTRY - 1) / ENTRY;
+    if (entries <= 2) return entries;
+    return first ? 2 * entries : entries + entries % 2;
+}
+
 unsigned block_fetches(uint64_t address, uint32_t length, unsigned instructions)
 {
-    const uint64_t end = address + length;
-    unsigned halves = 0; /* of a cycle */
-    for (uint64_t at = address, next; at < end; at = next) {
-        next = (at / LINE + 1) * LINE < end ? (at / LINE + 1) * LINE : end;
-        /* Which line an instruction is in is not known, but how long they are in the mean. */
-        const uint64_t here = (2 * instructions * (next - at) + length) / (2 * (uint64_t)length);
-        const unsigned entries = (unsigned)(here + ENTRY - 1) / ENTRY;
-        if (entries <= 2) halves += entries;
-        else halves += at == address ? 2 * entries : entries + entries % 2;
-    }
-    return (halves + 1) / 2;
+    if (length == 0) return 0;
+    const uint64_t rest_of_line = LINE - address % LINE;
+    const uint64_t first = rest_of_line < length ? rest_of_line : length, others = length - first;
+    uint64_t halves = line_halves(first, length, instructions, true);
+    /* Whole lines are all alike: a table may say that a block is as long as its code. */
+    halves += others / LINE * line_halves(LINE, length, instructions, false);
+    if (others % LINE) halves += line_halves(others % LINE, length, instructions, false);
+    return (unsigned)((halves + 1) / 2);
 }
 
 /* Counts of the block times the costs of the node, as for every other work

@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "base/progress.h"
+#include "base/random.h"
 #include "loader/block_costs.h"
 
 /* An image of 256 bytes that begins at address 0x1000: two blocks and a rate, and their table
@@ -174,6 +176,37 @@ static void rounds_wait_for_places_of_those_before(void **state)
 }
 
 /* By hand, from the rule in block_costs.c: entries of 6 instructions, lines of 64 bytes. */
+/* The same line by line. */
+static unsigned fetches_by_line(uint64_t address, uint32_t length, unsigned instructions)
+{
+    unsigned halves = 0;
+    for (uint64_t at = address, next; at < address + length; at = next) {
+        next = (at / 64 + 1) * 64 < address + length ? (at / 64 + 1) * 64 : address + length;
+        const uint64_t here = (2 * instructions * (next - at) + length) / (2 * (uint64_t)length);
+        const unsigned entries = (unsigned)((here + 5) / 6);
+        halves += entries <= 2 ? entries : at == address ? 2 * entries : entries + entries % 2;
+    }
+    return (halves + 1) / 2;
+}
+
+static void a_long_loop_takes_the_pieces_of_its_lines(void **state)
+{
+    (void)state;
+    struct random r = random_make(17, 0, 0);
+    for (int i = 0; i < 20000; i++) {
+        const uint64_t address = 4096 + random_below(&r, 256);
+        const uint32_t length = (uint32_t)random_below(&r, i % 2 ? 200 : 5000);
+        const unsigned instructions = (unsigned)random_below(&r, 1500);
+        assert_int_equal(block_fetches(address, length, instructions),
+                         fetches_by_line(address, length, instructions));
+    }
+    /* As long as a table can say: at once. */
+    const double begin = host_seconds();
+    for (int i = 0; i < 1000; i++)
+        assert_int_equal(block_fetches(4096, UINT32_MAX, 64), 0);
+    assert_true(host_seconds() - begin < 1);
+}
+
 static void loops_are_fetched_in_pieces(void **state)
 {
     (void)state;
@@ -327,6 +360,7 @@ int main(void)
         cmocka_unit_test(units_chains_and_code_have_prices),
         cmocka_unit_test(rounds_wait_for_places_of_those_before),
         cmocka_unit_test(loops_are_fetched_in_pieces),
+        cmocka_unit_test(a_long_loop_takes_the_pieces_of_its_lines),
         cmocka_unit_test(blocks_of_a_loop_take_the_same_bound),
         cmocka_unit_test(a_loop_that_does_not_fit_is_refused),
         cmocka_unit_test(a_table_that_does_not_fit_is_refused),
