@@ -78,12 +78,7 @@ static struct scene *take_scene(struct program_run *r, struct err *e)
     const struct run_part *part = divided_fits(&r->spec, r->order.keep) ? r->part : NULL;
     const bool fits = fits_in_memory(r, part, e);
     /* The others do not wait for one that cannot hold its part. */
-    if (part && !divided_all(part, fits) && fits) {
-        err_set(e, ERR_CONFIG, "another process of the job cannot hold its part of %d bodies",
-                r->spec.model.nbody);
-        return NULL;
-    }
-    if (!fits) return NULL;
+    if (part ? !part->agree(part->context, fits, e) : !fits) return NULL;
     struct scene *s = part ? scene_take(r->cache, &r->spec, r->order.keep, part, e) : NULL;
     r->divided = s != NULL;
     return s ? s : scene_take(r->cache, &r->spec, r->order.keep, NULL, e);

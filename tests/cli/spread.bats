@@ -113,6 +113,9 @@ says_whose_memory() {
     fails_with 1 start "$1" 3 ./limited "$MIMDSIM" run t.yaml "${large[@]}" --set n=16384,64
     stderr_says 'process 1 of the job: cannot reserve 1140850688 bytes of address space'
     sql_is all.db "SELECT group_concat(status, ' ') FROM (SELECT status FROM run ORDER BY n)" 'ok failed'
+    # a scene too large for it is refused in its words before any process makes its part
+    fails_with 78 start "$1" 3 ./limited "$MIMDSIM" run t.yaml "${large[@]}" --set n=1200000 --set ranks=64
+    stderr_says 'process 1 of the job: a run of 393750 bodies would take'
     # alone it ends with the status of refused memory
     fails_with 71 start "$1" 3 ./limited "$MIMDSIM" run t.yaml "${large[@]}" --set n=16384
 }
