@@ -178,14 +178,14 @@ first_messages() {
     # Half of the repetitions, by chance, touch 1,024 pages for the first time; the sanitizer has some of its own in each.
     cat >touch.c <<'C'
 #include <mimdsim/program.h>
-#include <stdlib.h>
+#include <sys/mman.h>
 static void run(struct comm *c)
 {
     const double one = 1;
-    volatile char *fresh = malloc(40 << 20); /* always from the system */
+    volatile char *fresh = mmap(0, 40 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (comm_now_ps(c) / 1000 % 2)
         for (long k = 0; k < 1024; k++) fresh[k * 4096] = 1;
-    free((void *)fresh);
+    munmap((void *)fresh, 40 << 20);
     comm_publish(c, 0, 0, 1, &one);
 }
 PROGRAM(.title = "pages", .output = {"x"}, .run = run);
