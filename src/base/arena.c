@@ -46,9 +46,9 @@ enum { GAP = 64 };
 enum { GAP = 0 };
 #endif
 
-/* ALIGN: a cache line, enough for any type and for vector loads. Blocks below HUGE_BLOCK are of the
- * heap unless they are made for a few takes; those from there on may use large pages; beyond
- * LARGEST_BLOCK they do not double any more. */
+/* ALIGN: a cache line, enough for any type and for vector loads. Blocks up to FIRST_BLOCK are of
+ * the heap, and so are those below HUGE_BLOCK that are made for many takes; those from there on may
+ * use large pages; beyond LARGEST_BLOCK they do not double any more. */
 enum {
     ALIGN = 64,
     SMALL_BLOCK = 1 << 16,

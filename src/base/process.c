@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -136,4 +137,11 @@ bool process_replace(const char *const *word, struct err *e)
 {
     execvp(word[0], (char *const *)word);
     return cannot_start(word[0], errno, e);
+}
+
+/* Asked after the system knows: a parent that ends in between is seen by one of both. */
+bool process_end_with(pid_t parent)
+{
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    return getppid() == parent;
 }

@@ -3,6 +3,7 @@
 #define BASE_PROCESS_H
 
 #include <stdbool.h>
+#include <sys/types.h>
 
 #include "base/err.h"
 #include "base/text.h"
@@ -24,5 +25,9 @@ bool process_said(const char *const *word, struct text *said, int *status, struc
 
 /* process_replace: become another program; returns only with an error, as above. */
 bool process_replace(const char *const *word, struct err *e);
+
+/* process_end_with: of a child that process `parent` has just forked: it is killed when the thread
+ * that forked it ends, whatever ends that one. False: it has ended already. */
+bool process_end_with(pid_t parent);
 
 #endif

@@ -10,10 +10,10 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
 
@@ -31,9 +31,7 @@ static const char *program(void)
  * -errno of what comes before. */
 static int become(const char *work, const char *file, int complaints, pid_t parent)
 {
-    /* It ends with the process that wants the picture, whatever ends that one. */
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) return -ESRCH;
+    if (!process_end_with(parent)) return -ESRCH;
     /* No terminal: gnuplot must neither ask nor write to ours. In its folder, as scripts name their
      * files without a path. */
     const int nothing = open("/dev/null", O_RDWR);
@@ -56,7 +54,7 @@ static int start(const char *work, const char *file, int complaints, pid_t *chil
     if (*child == 0) {
         code = become(work, file, complaints, parent);
         /* Where the parent is gone, nobody reads it. */
-        if (write(ends[1], &code, sizeof code) < 0) _exit(126);
+        (void)!write(ends[1], &code, sizeof code);
         _exit(127);
     }
     if (*child < 0) code = -errno;

@@ -12,12 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/check.h"
 #include "base/memory.h"
+#include "base/process.h"
 #include "base/progress.h"
 #include "base/whole.h"
 #include "loader/crash.h"
@@ -146,8 +146,7 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
     int index;
     /* A parent that is killed takes its workers along: nobody would read their answers, and code of
      * people may be in an endless loop. */
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != c->parent) _exit(0); /* it went before that was set */
+    if (!process_end_with(c->parent)) _exit(0);
     struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
     struct run_cache *cache = c->cache ? c->cache : own_cache();
     struct err unguarded; /* a crash is then told by its signal alone */

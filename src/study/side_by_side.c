@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,9 +45,9 @@ struct crew {
 };
 
 /* Pieces, until there are no more; a worker ends with its parent. */
-static _Noreturn void work(const struct crew *c, int answers)
+static _Noreturn void work(const struct crew *c, pid_t parent, int answers)
 {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (!process_end_with(parent)) _exit(0);
     for (int at; (at = atomic_fetch_add(c->next, 1)) < c->p->n;) {
         const int i = c->p->turn ? c->p->turn[at] : at;
         struct head h = {.piece = i};
@@ -66,12 +65,12 @@ static bool start(struct crew *c, struct err *e)
 {
     int fd[2];
     if (pipe(fd) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
-    const pid_t pid = fork();
+    const pid_t parent = getpid(), pid = fork();
     if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
     if (pid == 0) {
         close(fd[0]);
         for (int i = 0; i < c->nworker; i++) close(c->answers[i].fd);
-        work(c, fd[1]);
+        work(c, parent, fd[1]);
     }
     close(fd[1]);
     c->pid[c->nworker] = pid;

@@ -175,8 +175,7 @@ static void rounds_wait_for_places_of_those_before(void **state)
     assert_int_equal(block_cost_ps(&c, &round, 0, 1), 1100);
 }
 
-/* By hand, from the rule in block_costs.c: entries of 6 instructions, lines of 64 bytes. */
-/* The same line by line. */
+/* The rule in block_costs.c line by line: entries of 6 instructions, lines of 64 bytes. */
 static unsigned fetches_by_line(uint64_t address, uint32_t length, unsigned instructions)
 {
     unsigned halves = 0;
@@ -207,6 +206,7 @@ static void a_long_loop_takes_the_pieces_of_its_lines(void **state)
     assert_true(host_seconds() - begin < 1);
 }
 
+/* By hand, from the rule in block_costs.c. */
 static void loops_are_fetched_in_pieces(void **state)
 {
     (void)state;
