@@ -58,11 +58,14 @@ void *memory_aligned(size_t alignment, size_t n, size_t size)
 #if defined __GLIBC__ && defined MADV_HUGEPAGE && !defined SANITIZERS && !defined THREAD_SANITIZER
 /* LARGE_PAGE: of x86-64 and aarch64. LEAD: small pages before the first of them, which malloc
  * touches before it is advised. KEPT: address space that the heap takes at a time, and keeps.
- * MAPPED: malloc's own limit for what is mapped apart. */
-enum { LARGE_PAGE = 1 << 21, LEAD = 1 << 15, KEPT = 1 << 26, MAPPED = 1 << 25 };
+ * MAPPED: malloc's own limit for what is mapped apart. LEAST_SHARE: how many times KEPT must be
+ * there. */
+enum { LARGE_PAGE = 1 << 21, LEAD = 1 << 15, KEPT = 1 << 26, MAPPED = 1 << 25, LEAST_SHARE = 64 };
 
 void memory_large_pages(void)
 {
+    /* Where address space is limited, what the heap keeps would be missed elsewhere. */
+    if (size_available() / LEAST_SHARE < KEPT) return;
     /* What the start of the process has left of its first heap is given back, so that the next take
      * needs a new one: behind it, at the place that we choose. */
     malloc_trim(0);

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/process.h"
 #include "base/whole.h"
 
 enum { MOST_WORKERS = 64 };

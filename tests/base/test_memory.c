@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -47,6 +48,22 @@ static bool large_pages_given(void)
     return read && strstr(said, "[never]") == NULL;
 }
 
+/* With as much address space as `ulimit -v 300000` leaves, the heap takes none of it ahead. */
+static void little_address_space_is_left_to_others(void **state)
+{
+    (void)state;
+    struct rlimit before;
+    getrlimit(RLIMIT_AS, &before);
+    const struct rlimit little = {.rlim_cur = 300000 << 10, .rlim_max = before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_AS, &little), 0);
+    const char *end = sbrk(0);
+    memory_large_pages();
+    free(memory_take(1, 1 << 18));
+    const char *grown = sbrk(0);
+    setrlimit(RLIMIT_AS, &before);
+    assert_true(grown - end < 1 << 20);
+}
+
 static void memory_that_was_free_is_taken_again_without_a_fault(void **state)
 {
     (void)state;
@@ -63,6 +80,7 @@ static void memory_that_was_free_is_taken_again_without_a_fault(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(little_address_space_is_left_to_others), /* before what cannot be undone */
         cmocka_unit_test(memory_that_was_free_is_taken_again_without_a_fault),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
