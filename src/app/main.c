@@ -13,7 +13,7 @@
 #include "app/verb.h"
 #include "base/escape.h"
 #include "base/gsl_errors.h"
-#include "base/memory.h"
+#include "base/large_pages.h"
 #include "base/text.h"
 #include "run/catalogue.h"
 #include "store/build.h"
@@ -89,7 +89,7 @@ static int run_verb(const struct verb *v, int argc, char **argv)
     char name[sizeof prefix + 32], help[] = "--help";
     snprintf(name, sizeof name, "%s%s", prefix, v->name);
     argv[0] = name;
-    memory_large_pages();
+    large_pages_for_heap();
     for (int i = 1; !takes_compiler_options(v) && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "-h") == 0) argv[i] = help;
     return finish(v->run(argc, argv));

@@ -23,13 +23,6 @@ void *memory_resize(void *p, size_t n, size_t size)
 void *memory_aligned(size_t alignment, size_t n, size_t size)
     __attribute__((malloc, returns_nonnull));
 
-/* memory_large_pages: to be called once, before any other thread is there: what the heap holds from
- * then on lies in pages of 2 MiB where the system gives them to who asks, and stays with the
- * process when it is freed, up to 64 MiB. A page costs a fault each time it comes and goes, the
- * small ones as much as the large. Without glibc, with a sanitizer's heap, with less than 4 GiB
- * (size_available), or where the system refuses: nothing. */
-void memory_large_pages(void);
-
 /* memory_text: a copy of the string `s`; memory_text_part: of at most its first `n` bytes. */
 char *memory_text(const char *s) __attribute__((malloc, returns_nonnull));
 char *memory_text_part(const char *s, size_t n) __attribute__((malloc, returns_nonnull));

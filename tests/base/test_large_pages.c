@@ -1,5 +1,5 @@
-/* test_memory.c - memory of the heap: what many small takes cost in faults, and that it stays with
- * the process. */
+/* test_large_pages.c - the heap in large pages: what many small takes cost in faults, and that it
+ * stays with the process. */
 #include "config.h"
 
 #include <setjmp.h>
@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "base/large_pages.h"
 #include "base/memory.h"
 
 enum { PIECES = 1000, PIECE = 4096 };
@@ -57,7 +58,7 @@ static void little_address_space_is_left_to_others(void **state)
     const struct rlimit little = {.rlim_cur = 300000 << 10, .rlim_max = before.rlim_max};
     assert_int_equal(setrlimit(RLIMIT_AS, &little), 0);
     const char *end = sbrk(0);
-    memory_large_pages();
+    large_pages_for_heap();
     free(memory_take(1, 1 << 18));
     const char *grown = sbrk(0);
     setrlimit(RLIMIT_AS, &before);
@@ -67,7 +68,7 @@ static void little_address_space_is_left_to_others(void **state)
 static void memory_that_was_free_is_taken_again_without_a_fault(void **state)
 {
     (void)state;
-    memory_large_pages();
+    large_pages_for_heap();
     const long first = faults_of_pieces(), again = faults_of_pieces();
     print_message("%d pages: %ld faults, again %ld\n", PIECES, first, again);
 #if defined SANITIZERS || defined THREAD_SANITIZER || !defined __GLIBC__
