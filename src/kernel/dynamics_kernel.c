@@ -20,6 +20,9 @@ enum { INVERSE_STAGES = 4, FORWARD_STAGES = 7 };
  * ranks that leaves 48 bytes of a page. */
 enum { INVERSE_DEPTH = REAL_BITS == 64 ? 1312 : 0 };
 
+/* INVERSE_DEEPEST, FORWARD_DEEPEST: with any joints, solver, formulation and rule of time steps. */
+enum { INVERSE_DEEPEST = 1664, FORWARD_DEEPEST = 2880 };
+
 /* inverse's workspaces: one rank's share of the model, accelerations given, joint forces made. */
 struct chain_inverse {
     struct chain chain;
@@ -176,6 +179,32 @@ static size_t dynamics_bytes(const void *job_, int rank)
     return inverse > forward ? inverse : forward;
 }
 
+/* Open chains in double precision alone: dense operators, residuals in twice the digits and
+ * programs for trees have larger frames. */
+static bool is_plain(const struct kernel_job *job)
+{
+    const struct kernel_spec *k = &job->spec->kernel;
+    return REAL_BITS == 64 && !kernel_branches(job->model, &job->omit) &&
+           k->operators == OPERATORS_STRUCTURED && k->residual != RESIDUAL_TWICE &&
+           !kernel_spec_implicit(k);
+}
+
+static bool all_revolute(const struct model *m)
+{
+    bool revolute = true;
+    for (int i = m->first; i < m->end; i++)
+        revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
+    return revolute;
+}
+
+static int inverse_deepest(const void *job_)
+{
+    const struct kernel_job *job = job_;
+    return !is_plain(job) ? 0 : all_revolute(job->model) ? INVERSE_DEPTH : INVERSE_DEEPEST;
+}
+
+static int forward_deepest(const void *job) { return is_plain(job) ? FORWARD_DEEPEST : 0; }
+
 /* The program of one rank: the three recurrences in order, then its own part of tau. */
 static void chain_inverse_run(struct comm *c, const struct kernel_job *job, struct chain_inverse *v)
 {
@@ -281,7 +310,8 @@ const struct kernel_type inverse_kernel = {
              .workspace_bytes = inverse_bytes,
              .largest_message = largest_message,
              .run = inverse_run,
-             .depth = INVERSE_DEPTH},
+             .depth = INVERSE_DEPTH,
+             .deepest = inverse_deepest},
     .accepts = accepts_inverse,
     .prepare = prepare,
     .estimate = estimate_inverse,
@@ -297,7 +327,8 @@ const struct kernel_type forward_kernel = {
              .stage_name = stage_name,
              .workspace_bytes = forward_bytes,
              .largest_message = largest_message,
-             .run = either_forward_run},
+             .run = either_forward_run,
+             .deepest = forward_deepest},
     .accepts = accepts_forward,
     .prepare = prepare,
     .estimate = estimate_forward,
@@ -314,7 +345,8 @@ const struct kernel_type dynamics_kernel = {
              .stage_name = stage_name,
              .workspace_bytes = dynamics_bytes,
              .largest_message = largest_message,
-             .run = both_run},
+             .run = both_run,
+             .deepest = forward_deepest},
     .accepts = accepts_forward,
     .prepare = prepare,
     .estimate = estimate_dynamics,

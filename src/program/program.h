@@ -24,25 +24,11 @@
 #include "base/err.h"
 #include "comm/comm.h"
 #include "measure/run_result.h"
+#include "program/rank_program.h"
 #include "program/run_part.h"
 #include "spec/run_spec.h"
+
 enum { PROGRAM_OUTPUTS = 12 };
-/* What every rank executes. `job` is the program's own, shared by all ranks and read-only to
- * them. */
-struct rank_program {
-    int nstage;
-    const char *const *stage_name; /* (nstage) */
-    /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
-    size_t (*workspace_bytes)(const void *job, int rank);
-    /* largest_message: no message of this job is larger [B]; -1: not known. NULL: not known. */
-    int64_t (*largest_message)(const void *job);
-    /* run: the program of one rank. */
-    void (*run)(struct comm *c, const void *job, void *workspace);
-    /* as in world_load; false for built-in programs */
-    bool timed, no_synchronous, foreign, leftovers;
-    int64_t stack_bytes;            /* of each rank, 0: as for built-in programs */
-    int depth; /* of the calls of run, as measured [B]; 0: not known. Acts on memory alone */
-};
 
 /* One run of a program, from open to check. The caller fills the first part, open and prepare the
  * second; after open it stays in place, since the program points into it. */

@@ -1,4 +1,6 @@
 /* launch.c - workspaces for all ranks, and the function that hands each its own; see launch.h. */
+#include "config.h"
+
 #include "run/launch.h"
 
 #include <sched.h>
@@ -9,6 +11,7 @@
 #include "base/size.h"
 #include "base/text.h"
 #include "run/rank_stack.h"
+#include "sim/fiber.h"
 #include "spec/collective_spec.h"
 #include "vp/world.h"
 
@@ -49,19 +52,44 @@ static void program(struct comm *c, void *context)
 
 enum { PAGE = 4096 };
 
+/* Whether `depth` bytes and the workspace of every rank fit a page. */
+static bool fits_page(const struct program_run *r, const struct world_load *load, size_t depth)
+{
+    int first, end;
+    world_part(load, &first, &end);
+    for (int i = first; i < end; i++)
+        if (r->rank->workspace_bytes(r->job, i) + depth > PAGE) return false;
+    return true;
+}
+
 /* Whether stack and workspace of every rank share a page: what fiber.c saves above the first frame,
  * and frames of this file, are part of the depth. A stack that somebody wants smaller than usual is
  * left to the program. */
 static bool shares_page(const struct program_run *r, const struct world_load *load)
 {
     enum { LEAST_STACK = 2 * PAGE };
-    int first, end;
     if (r->rank->depth == 0 || (load->stack_bytes > 0 && load->stack_bytes < LEAST_STACK))
         return false;
-    world_part(load, &first, &end);
-    for (int i = first; i < end; i++)
-        if (r->rank->workspace_bytes(r->job, i) + (size_t)r->rank->depth > PAGE) return false;
-    return true;
+    return fits_page(r, load, (size_t)r->rank->depth);
+}
+
+/* Whether a page is all the stack that a rank needs, with something to spare, as other compilers
+ * may go a little deeper. What goes wrong without guards may not end the job of several processes,
+ * and a size that somebody asks for is given. */
+static bool packs(const struct program_run *r, enum network_level level,
+                  const struct world_load *load)
+{
+#if defined __OPTIMIZE__ && defined __x86_64__ && !defined SANITIZERS && !defined THREAD_SANITIZER
+    enum { SPARE = 2 * FIBER_PACKED_SPARE };
+    const size_t deepest = r->rank->deepest ? (size_t)r->rank->deepest(r->job) : 0,
+                 routers = level == LEVEL_LOGGP || level == LEVEL_LINK ? 0 : LAUNCH_ROUTED_DEPTH,
+                 depth = deepest + routers + SPARE;
+    if (deepest == 0 || load->hosts || load->stack_bytes > 0) return false;
+    return load->fills ? fits_page(r, load, depth) : depth <= PAGE;
+#else
+    (void)r, (void)level, (void)load;
+    return false;
+#endif
 }
 
 /* The bytes that rank `i` works in, or those of what `tape` keeps of it where there is one. */
@@ -199,17 +227,19 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.keeps_outputs = r->divided;
     load.sums = r->order.sums;
     load.fills = !tape && shares_page(r, &load);
+    load.packed = !tape && packs(r, m->network.level, &load);
     struct launch l = {.rank = r->rank, .job = r->job, .tape = tape};
     if (!load.fills && !(l.workspace = make_workspaces(r, &load, tape, scratch, e))) return false;
     load.context = &l;
     if (tape && load.threads <= 1 && !load.hosts) load.stacks = tape_stacks(tape);
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
-    if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts))
-        return true;
+    const bool one = load.threads <= 1 && !load.hosts;
+    if (out->status != RUN_FAILED || out->job_broken || (one && !load.packed)) return true;
     /* A part of the scene is not enough to make all of it again. */
     if (load.hosts && (load.hosts->rank > 0 || r->divided)) return true;
     /* Of several ranks that fail, one is told: the first on one thread. Which one is first on
-     * several depends on the host, so such a run is made again on one. */
+     * several depends on the host, so such a run is made again on one. It has room below its
+     * stacks then, which may be all that was missing. */
     arena_release(a, results);
     arena_release(scratch, work);
     memset(out, 0, sizeof *out);
@@ -217,6 +247,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.hosts = NULL;
     load.sums = false;
     load.threads = 1;
+    load.packed = false;
     l.tape = NULL;
     load.fills = shares_page(r, &load);
     l.workspace = load.fills ? NULL : make_workspaces(r, &load, NULL, scratch, e);

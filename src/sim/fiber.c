@@ -66,8 +66,11 @@ struct fiber {
 
 struct fiber_pool {
     struct fiber *fiber; /* (n), owned */
-    char *base;          /* the mapping */
-    size_t stride;       /* stack and guard page */
+    char *base;          /* of the lowest stack, or what is below it */
+    char *mapping;       /* where they are; NULL: on the heap */
+    size_t mapped;       /* its bytes */
+    size_t stride;       /* stack and what is below it */
+    size_t below;        /* the guard page; 0: packed, none */
     size_t stack_bytes, page;
     int n, nguard;
     int room; /* stacks that are mapped, n of them in use */
@@ -131,40 +134,71 @@ static size_t whole_pages(int64_t stack_bytes, size_t page)
     return ((size_t)stack_bytes + page - 1) / page * page;
 }
 
+/* A mapping of `bytes` that is reserved and not committed. MAP_NORESERVE: ten thousands of stacks
+ * may be reserved on a machine that has memory for the touched pages only. */
+static char *reserve(size_t bytes, int n, struct err *e)
+{
+    char *base = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
+    if (base != MAP_FAILED) {
+        sanitizer_fresh(base, bytes);
+        return base;
+    }
+    err_set(e, ERR_INTERNAL,
+            "cannot reserve %zu bytes of address space for the stacks of %d virtual processors: %s",
+            bytes, n, strerror(errno));
+    return NULL;
+}
+
+static struct fiber_pool *pool_make(const struct fiber_pool *like)
+{
+    struct fiber_pool *p = memory_take(1, sizeof *p);
+    *p = *like;
+    p->fiber = memory_zeroed((size_t)p->n, sizeof *p->fiber);
+    p->room = p->n;
+    return p;
+}
+
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 {
-    /* MAP_NORESERVE: ten thousands of stacks may be reserved on a machine that has memory for the
-     * touched pages only. */
-    size_t page = (size_t)sysconf(_SC_PAGESIZE);
-    size_t stack = whole_pages(stack_bytes, page), stride = stack + page;
-    char *base = mmap(NULL, stride * (size_t)n, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
-    if (base == MAP_FAILED) {
-        err_set(
-            e, ERR_INTERNAL,
-            "cannot reserve %zu bytes of address space for the stacks of %d virtual processors: %s",
-            stride * (size_t)n, n, strerror(errno));
-        return NULL;
-    }
-    sanitizer_fresh(base, stride * (size_t)n);
-    madvise(base, stride * (size_t)n,
-            MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
-    struct fiber_pool *p = memory_zeroed(1, sizeof *p);
-    p->fiber = memory_zeroed((size_t)n, sizeof *p->fiber);
-    p->base = base;
-    p->stride = stride;
-    p->stack_bytes = stack;
-    p->page = page;
-    p->n = p->room = n;
-    p->colours = COLOURS;
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), stack = whole_pages(stack_bytes, page);
+    struct fiber_pool p = {.n = n, .page = page, .stack_bytes = stack, .below = page};
+    p.stride = stack + page;
+    p.mapped = p.stride * (size_t)n;
+    p.colours = COLOURS;
+    p.base = p.mapping = reserve(p.mapped, n, e);
+    if (!p.base) return NULL;
+    madvise(p.base, p.mapped, MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
     /* Where not all can be had, fiber_pool_stack_peak looks at the spare pages instead. */
-    p->nguard = guard_pages(base, stride, page, n);
-    return p;
+    p.nguard = guard_pages(p.base, p.stride, page, n);
+    return pool_make(&p);
+}
+
+struct fiber_pool *fiber_pool_create_packed(int n, struct err *e)
+{
+    enum { LARGE_PAGE = 1 << 21 }; /* of x86-64 and aarch64 */
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), bytes = page * (size_t)n;
+    struct fiber_pool p = {.n = n, .page = page, .stack_bytes = page, .stride = page};
+    p.colours = 1;
+    /* A few of them lie in the large pages of the heap, which are there already. */
+    if (bytes < LARGE_PAGE) {
+        p.base = memory_aligned(page, (size_t)n, page);
+        memset(p.base, 0, bytes);
+        return pool_make(&p);
+    }
+    /* From a border of large pages on, which all systems but new ones leave to chance. */
+    p.mapped = bytes + LARGE_PAGE;
+    p.mapping = reserve(p.mapped, n, e);
+    if (!p.mapping) return NULL;
+    p.base = p.mapping + (0 - (uintptr_t)p.mapping) % LARGE_PAGE;
+    madvise(p.base, bytes, MADV_HUGEPAGE);
+    return pool_make(&p);
 }
 
 bool fiber_pool_again(struct fiber_pool *p, int n, int64_t stack_bytes)
 {
-    if (n > p->room || whole_pages(stack_bytes, p->page) != p->stack_bytes) return false;
+    if (n > p->room || p->below == 0 || whole_pages(stack_bytes, p->page) != p->stack_bytes)
+        return false;
     for (int i = 0; i < p->n; i++) CHECK(p->fiber[i].pool == NULL || p->fiber[i].finished);
     sanitizer_fresh(p->base, p->stride * (size_t)p->n);
     memset(p->fiber, 0, (size_t)p->n * sizeof *p->fiber);
@@ -178,9 +212,9 @@ void fiber_pool_fill(struct fiber_pool *p) { p->colours = 1; }
 void fiber_pool_destroy(struct fiber_pool *p)
 {
     if (!p) return;
-    sanitizer_fresh(p->base,
-                    p->stride * (size_t)p->room); /* whoever is mapped here next inherits nothing */
-    munmap(p->base, p->stride * (size_t)p->room);
+    sanitizer_fresh(p->base, p->stride * (size_t)p->room); /* the next one here inherits nothing */
+    if (p->mapping) munmap(p->mapping, p->mapped);
+    else free(p->base);
     free(p->fiber);
     free(p);
 }
@@ -259,7 +293,7 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
     struct fiber *f = &p->fiber[i];
     /* What ran in this place before has been counted, and stays so. */
     *f = (struct fiber){.pool = p, .fn = fn, .argument = argument, .switches = f->switches};
-    f->stack = p->base + p->stride * (size_t)i + p->page;
+    f->stack = p->base + p->stride * (size_t)i + p->below;
     /* Stacks lie a whole number of pages apart, so that their tops would compete for the same sets
      * of the first-level cache. Shifted tops keep the hot lines of different fibers apart. */
     char *top = f->stack + p->stack_bytes - (size_t)(i % p->colours) * COLOUR_BYTES;
@@ -293,8 +327,28 @@ static size_t resident_depth(const unsigned char *resident, size_t npage)
     return npage - lowest;
 }
 
+/* Memory of the system is zero where nothing was written. Of neighbours that follow each other the
+ * uppermost has gone too far. */
+static int64_t packed_peak(const struct fiber_pool *p, int *overflowed)
+{
+    size_t deepest = 0;
+    *overflowed = -1;
+    for (int i = 0; i < p->n; i++) {
+        const uint64_t *word = (const uint64_t *)(const void *)(p->base + p->stride * (size_t)i);
+        const size_t words = p->stride / sizeof *word;
+        size_t zero = 0;
+        while (zero < words && word[zero] == 0) zero++;
+        if (zero * sizeof *word < FIBER_PACKED_SPARE && (*overflowed < 0 || *overflowed == i - 1))
+            *overflowed = i;
+        const size_t depth = p->stride - zero * sizeof *word;
+        if (depth > deepest) deepest = depth;
+    }
+    return (int64_t)deepest;
+}
+
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed)
 {
+    if (p->below == 0) return packed_peak(p, overflowed);
     enum { BATCH = 1024 };
     size_t npage = p->stride / p->page, deepest = 0;
     /* mincore answers for a range of pages at once. In batches, the answer stays small whatever the
@@ -326,7 +380,7 @@ int fiber_below(const struct fiber_pool *p, const void *address)
 {
     const uintptr_t from = (uintptr_t)p->base, at = (uintptr_t)address;
     if (at < from || at - from >= p->stride * (size_t)p->n) return -1;
-    return (at - from) % p->stride < p->page ? (int)((at - from) / p->stride) : -1;
+    return (at - from) % p->stride < p->below ? (int)((at - from) / p->stride) : -1;
 }
 
 int64_t fiber_pool_switches(const struct fiber_pool *p)

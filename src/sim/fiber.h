@@ -20,6 +20,13 @@ typedef void fiber_fn(void *argument);
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e);
 void fiber_pool_destroy(struct fiber_pool *p);
 
+/* fiber_pool_create_packed: as above, with stacks of one page each, side by side and in large pages
+ * where the system gives them: for fibers of which is known that they leave FIBER_PACKED_SPARE
+ * bytes of it. There is no guard; one that uses more than it should writes over its neighbour's,
+ * which fiber_pool_stack_peak then tells. Such a pool is not used again. */
+enum { FIBER_PACKED_SPARE = 64 };
+struct fiber_pool *fiber_pool_create_packed(int n, struct err *e);
+
 /* fiber_pool_again: a pool whose fibers have all returned, for `n` others: their stacks need not be
  * mapped and touched again, but fiber_pool_stack_peak goes on from those before. False where it has
  * no room for them, or stacks of another size: nothing has changed then. */
@@ -46,9 +53,9 @@ void fiber_prefetch(const struct fiber *f);
  * f. */
 void fiber_leave(struct fiber *f);
 
-/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages.
- * *overflowed: the fiber whose stack was not enough, which shows in its spare page where there is
- * no guard; -1: none. */
+/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B]: in whole resident pages, of
+ * packed stacks as far down as something was written. *overflowed: the fiber whose stack was not
+ * enough, which shows in its spare page, or spare bytes, where there is no guard; -1: none. */
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed);
 
 /* fiber_below: the fiber below whose stack `address` is, in its guard or spare page; -1: none. May

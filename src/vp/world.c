@@ -242,6 +242,7 @@ static bool by_windows(const struct world *w)
 static struct fiber_pool *stacks_take(const struct world *w, struct err *e)
 {
     struct fiber_pool **kept = w->load->stacks, *p = kept ? *kept : NULL;
+    if (w->load->packed) return fiber_pool_create_packed(w->nrank, e);
     if (!p || !fiber_pool_again(p, w->nrank, stack_bytes(w)))
         return fiber_pool_create(w->nrank, stack_bytes(w), e);
     *kept = NULL;

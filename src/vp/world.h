@@ -35,6 +35,7 @@ struct world_load {
     const char *name;              /* of the program, for messages; NULL: none */
     int64_t stack_bytes;           /* of each rank, 0: what built-in programs need */
     bool fills; /* ranks fill the first page of their stacks (fiber_pool_fill) */
+    bool packed; /* a page is all the stack that each has (fiber_pool_create_packed) */
     /* of programs that are not foreign: called in a signal handler when a rank has gone beyond its
      * stack, with a sentence; ends the process. NULL: the fault ends it */
     void (*overflowed)(void *context, const char *text);

@@ -59,7 +59,7 @@ survives_kills() {
 
 @test "a worker that is killed costs its run alone, and the run says so" {
     needs openmpi
-    many 60
+    many 600
     start openmpi 2 "$MIMDSIM" run own.yaml --campaign mpi -o "$PWD/all.db" --quiet >/dev/null 2>&1 3>&- &
     job=$!
     # Workers are the children of the processes that mpirun started.
@@ -75,7 +75,7 @@ survives_kills() {
     kill -9 "$worker"
     wait $job || status=$?
     [ "$status" -eq 1 ]
-    sql_is all.db "SELECT count(*) FROM run WHERE status = 'ok'" 59
+    sql_is all.db "SELECT count(*) FROM run WHERE status = 'ok'" 599
     sql_is all.db "SELECT text FROM run WHERE status = 'failed'" 'its worker process was killed by signal 9 (Killed)'
 }
 

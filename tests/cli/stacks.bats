@@ -97,3 +97,16 @@ C
     sql memory.db "SELECT P, host_peak_bytes FROM run"
     sql_is memory.db "SELECT (max(host_peak_bytes) - min(host_peak_bytes)) / 12288 < 7800 FROM run" 1
 }
+
+@test "open chains of the program as it is linked need no more than a page, of which bytes are left" {
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'model: {generator: serial-chain}' 'ranks: n' 'sweep:' '  level: [link]' \
+        '  n: [64]' '  kernel.formulation: [paper, direct]' '  kernel.solver: [pcr-symmetric, cr, thomas, cr-pcr, pcr]' \
+        '  model.joint: [revolute, mixed, helical]' '  kernel.name: [inverse, dynamics]' >deep.yaml
+    works mimdsim run deep.yaml -o t.db --quiet
+    sql_is t.db "SELECT count(*) FROM run WHERE status = 'ok'" 60
+    # Whole pages: a build whose stacks have guards.
+    if [ "$(sqlite3 t.db 'SELECT max(stack_peak_bytes % 4096) FROM run')" -gt 0 ]; then
+        sql_is t.db "SELECT count(*) FROM run WHERE stack_peak_bytes > 4096 - 128" 0
+        sql_is t.db "SELECT max(stack_peak_bytes) <= 2880 FROM run WHERE kernel = 'dynamics'" 1
+    fi
+}

@@ -189,6 +189,73 @@ static void one_rank_runs_for_real_in_this_process(void **state)
     plan_free(&p);
 }
 
+/* A program that promises a depth, and of which one rank needs more. */
+enum { PROMISED = 600, DEEP_RANK = 2 };
+
+static size_t two_kilobytes(const void *job, int rank)
+{
+    (void)job, (void)rank;
+    return 2048;
+}
+
+static int promised(const void *job)
+{
+    (void)job;
+    return PROMISED;
+}
+
+static __attribute__((noinline)) void go_deep(void)
+{
+    volatile char frame[3000];
+    for (size_t i = 0; i < sizeof frame; i += 8) frame[i] = 1;
+}
+
+static void deep_run(struct comm *c, const void *job, void *workspace)
+{
+    (void)job;
+    memset(workspace, 1, 2048);
+    if (comm_rank(c) == DEEP_RANK) go_deep();
+}
+
+static void shallow_run(struct comm *c, const void *job, void *workspace)
+{
+    (void)c, (void)job;
+    memset(workspace, 1, 2048);
+}
+
+/* Without guards it writes over its neighbour's stack, which is seen, and the run made again on
+ * stacks that have more. */
+static void a_rank_deeper_than_was_promised_gets_more(void **state)
+{
+    (void)state;
+    static const char *const set[] = {"n=4", "ranks=4", "level=loggp"}, *const stage[] = {"all"};
+    struct plan p = plan_of(set, 3);
+    for (int deep = 0; deep < 2; deep++) {
+        const struct program_type type = {.name = "deep"};
+        const struct rank_program rank = {.nstage = 1,
+                                          .stage_name = stage,
+                                          .workspace_bytes = two_kilobytes,
+                                          .run = deep ? deep_run : shallow_run,
+                                          .depth = PROMISED,
+                                          .deepest = promised};
+        struct program_run r = {.type = &type, .spec = p.run[0], .rank = &rank};
+        struct arena *scratch = arena_create(), *a = arena_create();
+        struct run_result out = {0};
+        struct err e;
+        err_clear(&e);
+        if (!launch_run(&r, &r.spec.machine, &r.spec.record, 1, -1, NULL, scratch, NULL, a, &out,
+                        &e))
+            fail_msg("%s", e.text);
+        assert_int_equal(out.status, RUN_OK);
+        print_message("deepest: %lld bytes\n", (long long)out.stack_peak_bytes);
+        if (deep) assert_true(out.stack_peak_bytes >= 8192 && out.stack_peak_bytes % 4096 == 0);
+        else assert_true(out.stack_peak_bytes <= 4096);
+        arena_destroy(a);
+        arena_destroy(scratch);
+    }
+    plan_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +264,7 @@ int main(void)
         cmocka_unit_test(programs_have_names_and_titles),
         cmocka_unit_test(what_has_no_program_is_refused),
         cmocka_unit_test(one_rank_runs_for_real_in_this_process),
+        cmocka_unit_test(a_rank_deeper_than_was_promised_gets_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

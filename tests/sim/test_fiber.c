@@ -203,6 +203,12 @@ static void note_place(void *argument)
     *(uintptr_t *)argument = (uintptr_t)__builtin_frame_address(0) % 4096;
 }
 
+/* Where a fiber's first frame lies. */
+static void note_address(void *argument)
+{
+    *(uintptr_t *)argument = (uintptr_t)__builtin_frame_address(0);
+}
+
 /* Tops are shifted against each other, but for those that fill a page; a pool that is used again
  * begins anew. */
 static void filled_pages_have_no_shifted_tops(void **state)
@@ -223,6 +229,62 @@ static void filled_pages_have_no_shifted_tops(void **state)
     fiber_pool_destroy(p);
 }
 
+/* Writes to its stack from the place that it was given on. */
+struct writer {
+    char *lowest;
+    int value;
+};
+
+static void write_down_to(void *argument)
+{
+    const struct writer *w = argument;
+    /* Not by a frame of that size: sanitizers may keep arrays elsewhere. */
+    *(volatile char *)w->lowest = (char)w->value;
+}
+
+/* Fibers of a page each; both kinds of memory that they may come from. Spare bytes that are written
+ * to are seen, from the first of them on. */
+static void packed_stacks_tell_how_deep_they_were_and_who_went_too_far(void **state)
+{
+    (void)state;
+    enum { FEW = 5, MANY = 1000, AT = 3 };
+    static const int size[] = {FEW, MANY};
+    const int page = (int)sysconf(_SC_PAGESIZE);
+    for (int k = 0; k < 2; k++) {
+        static struct counter c[MANY];
+        struct err e;
+        err_clear(&e);
+        struct fiber_pool *p = fiber_pool_create_packed(size[k], &e);
+        assert_non_null(p);
+        for (int i = 0; i < size[k]; i++) {
+            c[i] = (struct counter){.id = i, .rounds = 2};
+            c[i].fiber = fiber_start(p, i, count_rounds, &c[i]);
+        }
+        for (int round = 0; round < 3; round++)
+            for (int i = 0; i < size[k]; i++)
+                assert_int_equal(fiber_enter(c[i].fiber), round < 2);
+        for (int i = 0; i < size[k]; i++) assert_int_equal(c[i].seen, 2);
+        const int64_t usual = peak_of(p);
+        assert_true(usual > 0 && usual < page);
+        assert_false(fiber_pool_again(p, FEW, page));
+        /* a fiber's own first byte: the bytes of page AT begin one page above those of AT - 1 */
+        uintptr_t place = 0;
+        assert_false(fiber_enter(fiber_start(p, AT, note_address, &place)));
+        char *bottom = (char *)(place / (uintptr_t)page * (uintptr_t)page);
+        assert_int_equal(fiber_below(p, bottom - 1), -1);
+        assert_int_equal(fiber_below(p, bottom), -1);
+        static const int above[] = {FIBER_PACKED_SPARE + 7, FIBER_PACKED_SPARE, 56, 7, 0};
+        for (int j = 0; j < 5; j++) {
+            struct writer w = {bottom + above[j], 1};
+            int overflowed;
+            assert_false(fiber_enter(fiber_start(p, AT, write_down_to, &w)));
+            assert_int_equal(fiber_pool_stack_peak(p, &overflowed), page - above[j] / 8 * 8);
+            assert_int_equal(overflowed, above[j] < FIBER_PACKED_SPARE ? AT : -1);
+        }
+        fiber_pool_destroy(p);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -233,6 +295,7 @@ int main(void)
         cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
         cmocka_unit_test(a_pool_is_used_again),
         cmocka_unit_test(filled_pages_have_no_shifted_tops),
+        cmocka_unit_test(packed_stacks_tell_how_deep_they_were_and_who_went_too_far),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
