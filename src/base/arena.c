@@ -119,8 +119,9 @@ static struct block *block_of_heap(size_t capacity)
     return b;
 }
 
-/* block_map: an empty block with room for `size` bytes after its head. */
-static struct block *block_map(struct arena *a, size_t size)
+/* block_map: an empty block with room for `size` bytes after its head. `full`: they will all be
+ * written. */
+static struct block *block_map(struct arena *a, size_t size, bool full)
 {
     if (a->next == SMALL_BLOCK) {
         a->next = FIRST_BLOCK;
@@ -130,7 +131,7 @@ static struct block *block_map(struct arena *a, size_t size)
     if (capacity < a->next) capacity = a->next;
     if (a->next < LARGEST_BLOCK) a->next *= 2;
     /* A block of many takes fills from below; a single large array may stay sparse. */
-    const bool fills = size <= capacity / 8;
+    const bool fills = full || size <= capacity / 8;
     if ((fills && capacity < HUGE_BLOCK) || capacity <= FIRST_BLOCK) return block_of_heap(capacity);
     struct block *b = mmap(NULL, capacity, PROT_READ | PROT_WRITE,
                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -142,7 +143,7 @@ static struct block *block_map(struct arena *a, size_t size)
 }
 
 /* arena_grow: make a block with `size` free bytes the top. */
-static struct block *arena_grow(struct arena *a, size_t size)
+static struct block *arena_grow(struct arena *a, size_t size, bool full)
 {
     /* The block kept by an earlier release, if it is large enough. */
     struct block *b = a->spare;
@@ -152,20 +153,20 @@ static struct block *arena_grow(struct arena *a, size_t size)
         block_unmap(b);
         b = NULL;
     }
-    if (!b) b = block_map(a, size);
+    if (!b) b = block_map(a, size, full);
     b->below = a->top;
     b->before = a->top ? a->top->before + a->top->used - ALIGN : 0;
     a->top = b;
     return b;
 }
 
-void *arena_take(struct arena *a, size_t size)
+static inline void *take(struct arena *a, size_t size, bool full)
 {
     /* What a negative number becomes as size_t; rounding up below cannot wrap. */
     if (size >= SIZE_MAX / 2) check_memory(size);
     size_t room = (size + ALIGN - 1) / ALIGN * ALIGN + GAP;
     struct block *b = a->top;
-    if (!b || b->capacity - b->used < room) b = arena_grow(a, room);
+    if (!b || b->capacity - b->used < room) b = arena_grow(a, room, full);
     char *p = (char *)b + b->used;
     /* Only what was handed out before needs clearing; fresh pages of the mapping are zero. */
     if (b->used < b->dirty) {
@@ -181,6 +182,10 @@ void *arena_take(struct arena *a, size_t size)
     if (in_use > a->peak) a->peak = in_use;
     return p;
 }
+
+void *arena_take(struct arena *a, size_t size) { return take(a, size, false); }
+
+void *arena_take_full(struct arena *a, size_t size) { return take(a, size, true); }
 
 char *arena_text(struct arena *a, const char *s)
 {
@@ -256,7 +261,7 @@ void arena_touch(struct arena *a, size_t more)
     if (more == 0) return;
     if (a->top) block_foresee(a->top, more);
     if (a->spare && a->spare->capacity - ALIGN < more) block_unmap(a->spare), a->spare = NULL;
-    if (!a->spare) a->spare = block_map(a, more);
+    if (!a->spare) a->spare = block_map(a, more, false);
     block_foresee(a->spare, more);
 }
 

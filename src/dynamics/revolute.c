@@ -5,7 +5,9 @@
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
 {
     /* From the rounded constants, so that both texts compute with the same numbers. */
-    struct revolute *out = TAKE(a, m->nbody, struct revolute);
+    const bool all = m->end - m->first == m->nbody;
+    struct revolute *out =
+        all ? TAKE_FULL(a, m->nbody, struct revolute) : TAKE(a, m->nbody, struct revolute);
     for (int i = m->first; i < m->end; i++) {
         struct revolute *r = &out[i];
         const real *j = b[i].mass->jc, half = REAL(0.5);

@@ -13,6 +13,8 @@
 #include "base/progress.h"
 #include "base/random.h"
 
+#include "../support/large_pages.h"
+
 static bool all_are(const unsigned char *p, size_t size, unsigned char value)
 {
     for (size_t k = 0; k < size; k++)
@@ -186,6 +188,30 @@ static void memory_that_was_touched_is_written_without_page_faults(void **state)
     arena_destroy(a);
 }
 
+/* What will be written all over takes few faults; what may stay sparse takes memory for the pages
+ * that are written alone. */
+static void full_arrays_lie_in_large_pages_and_sparse_ones_do_not(void **state)
+{
+    (void)state;
+    const size_t size = (size_t)32 << 20, page = 4096, pages = size / page;
+    struct arena *a = arena_create();
+    unsigned char *full = arena_take_full(a, size), *sparse = arena_take(a, size);
+    long before = faults();
+    memset(full, 5, size);
+    const long of_full = faults() - before;
+    assert_true(all_are(full, size, 5));
+    before = faults();
+    for (size_t i = 0; i < pages; i += 8) sparse[i * page] = 1;
+    const long of_sparse = faults() - before;
+    print_message("%zu pages: %ld faults, an eighth of them: %ld\n", pages, of_full, of_sparse);
+    arena_destroy(a);
+#if defined SANITIZERS || defined THREAD_SANITIZER
+    skip(); /* their shadows have faults of their own */
+#endif
+    assert_true(of_sparse >= (long)pages / 8 - 2);
+    if (large_pages_given()) assert_true(of_full < (long)pages / 8);
+}
+
 /* Whether the takes fill what is left of a block or need another one. */
 static void takes_that_were_foreseen_meet_no_page_faults(void **state)
 {
@@ -259,6 +285,7 @@ int main(void)
         cmocka_unit_test(untouched_memory_costs_no_memory_of_the_host),
         cmocka_unit_test(memory_that_was_touched_is_written_without_page_faults),
         cmocka_unit_test(takes_that_were_foreseen_meet_no_page_faults),
+        cmocka_unit_test(full_arrays_lie_in_large_pages_and_sparse_ones_do_not),
         cmocka_unit_test(takes_that_are_repeated_lie_at_the_same_addresses_and_are_zero),
         cmocka_unit_test(an_empty_take_is_a_place_and_null_is_destroyed_in_peace),
     };

@@ -17,6 +17,8 @@
 #include "base/large_pages.h"
 #include "base/memory.h"
 
+#include "../support/large_pages.h"
+
 enum { PIECES = 1000, PIECE = 4096 };
 
 /* Faults of this process up to now. */
@@ -36,17 +38,6 @@ static long faults_of_pieces(void)
     const long after = faults();
     for (int i = 0; i < PIECES; i++) free(piece[i]);
     return after - before;
-}
-
-/* Whether the system gives large pages to who asks. */
-static bool large_pages_given(void)
-{
-    char said[64] = "";
-    FILE *f = fopen("/sys/kernel/mm/transparent_hugepage/enabled", "r");
-    if (f == NULL) return false;
-    const bool read = fgets(said, sizeof said, f) != NULL;
-    fclose(f);
-    return read && strstr(said, "[never]") == NULL;
 }
 
 /* With as much address space as `ulimit -v 300000` leaves, the heap takes none of it ahead. */
