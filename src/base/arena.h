@@ -53,9 +53,9 @@ void arena_touch(struct arena *a, size_t more);
 size_t arena_used(const struct arena *a);
 size_t arena_peak(const struct arena *a);
 
-/* TAKE(a, n, type): an array of n zeroed elements of `type`; TAKE_FULL: by arena_take_full. Where n is a product it is a
- * size_product: what wraps in an int is small again before this macro sees it. A size that does not
- * fit, or is negative, is refused as memory. */
+/* TAKE(a, n, type): an array of n zeroed elements of `type`; TAKE_FULL: by arena_take_full. Where n
+ * is a product it is a size_product: what wraps in an int is small again before this macro sees it.
+ * A size that does not fit, or is negative, is refused as memory. */
 #define TAKE(a, n, type) ((type *)arena_take((a), size_product((size_t)(n), sizeof(type))))
 #define TAKE_FULL(a, n, type)                                                                      \
     ((type *)arena_take_full((a), size_product((size_t)(n), sizeof(type))))
