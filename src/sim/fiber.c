@@ -11,6 +11,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/arena.h"
 #include "base/check.h"
 #include "base/memory.h"
 #include "base/size.h"
@@ -65,7 +66,8 @@ struct fiber {
 };
 
 struct fiber_pool {
-    struct fiber *fiber; /* (n), owned */
+    struct arena *arena; /* of `fiber`, owned */
+    struct fiber *fiber; /* (n) */
     char *base;          /* of the lowest stack, or what is below it */
     char *mapping;       /* where they are; NULL: on the heap */
     size_t mapped;       /* its bytes */
@@ -154,7 +156,10 @@ static struct fiber_pool *pool_make(const struct fiber_pool *like)
 {
     struct fiber_pool *p = memory_take(1, sizeof *p);
     *p = *like;
-    p->fiber = memory_zeroed((size_t)p->n, sizeof *p->fiber);
+    p->arena = arena_create();
+    /* Of processes that share a run each starts some of them, but all of packed ones. */
+    p->fiber = p->below > 0 ? TAKE(p->arena, p->n, struct fiber)
+                            : TAKE_FULL(p->arena, p->n, struct fiber);
     p->room = p->n;
     return p;
 }
@@ -215,7 +220,7 @@ void fiber_pool_destroy(struct fiber_pool *p)
     sanitizer_fresh(p->base, p->stride * (size_t)p->room); /* the next one here inherits nothing */
     if (p->mapping) munmap(p->mapping, p->mapped);
     else free(p->base);
-    free(p->fiber);
+    arena_destroy(p->arena);
     free(p);
 }
 
