@@ -1,6 +1,4 @@
 /* launch.c - workspaces for all ranks, and the function that hands each its own; see launch.h. */
-#include "config.h"
-
 #include "run/launch.h"
 
 #include <sched.h>
@@ -79,17 +77,12 @@ static bool shares_page(const struct program_run *r, const struct world_load *lo
 static bool packs(const struct program_run *r, enum network_level level,
                   const struct world_load *load)
 {
-#if defined __OPTIMIZE__ && defined __x86_64__ && !defined SANITIZERS && !defined THREAD_SANITIZER
     enum { SPARE = 2 * FIBER_PACKED_SPARE };
     const size_t deepest = r->rank->deepest ? (size_t)r->rank->deepest(r->job) : 0,
                  routers = level == LEVEL_LOGGP || level == LEVEL_LINK ? 0 : LAUNCH_ROUTED_DEPTH,
                  depth = deepest + routers + SPARE;
-    if (deepest == 0 || load->hosts || load->stack_bytes > 0) return false;
+    if (deepest == 0 || load->hosts || load->stack_bytes > 0 || !fiber_packs()) return false;
     return load->fills ? fits_page(r, load, depth) : depth <= PAGE;
-#else
-    (void)r, (void)level, (void)load;
-    return false;
-#endif
 }
 
 /* The bytes that rank `i` works in, or those of what `tape` keeps of it where there is one. */

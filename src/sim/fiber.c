@@ -5,6 +5,8 @@
 #include "sim/fiber.h"
 
 #include <errno.h>
+#include <link.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,7 +71,7 @@ struct fiber_pool {
     struct arena *arena; /* of `fiber`, owned */
     struct fiber *fiber; /* (n) */
     char *base;          /* of the lowest stack, or what is below it */
-    char *mapping;       /* where they are; NULL: on the heap */
+    char *mapping, *heap; /* where they are, the other NULL */
     size_t mapped;       /* its bytes */
     size_t stride;       /* stack and what is below it */
     size_t below;        /* the guard page; 0: packed, none */
@@ -179,15 +181,52 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     return pool_make(&p);
 }
 
+#if defined __OPTIMIZE__ && defined __x86_64__ && !defined SANITIZERS && !defined THREAD_SANITIZER
+/* Whether the dynamic linker has found every function of the program before main: its own section
+ * says so. */
+static bool bound_at_start(void)
+{
+    for (const ElfW(Dyn) *d = _DYNAMIC; d->d_tag != DT_NULL; d++)
+        if (d->d_tag == DT_BIND_NOW ||
+            (d->d_tag == DT_FLAGS && (d->d_un.d_val & DF_BIND_NOW) != 0) ||
+            (d->d_tag == DT_FLAGS_1 && (d->d_un.d_val & DF_1_NOW) != 0))
+            return true;
+    return false;
+}
+
+/* Of signals that come at any time: the faults of a program end it. */
+static bool handler_on_own_stack(int number)
+{
+    static const int fault[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP};
+    struct sigaction now;
+    for (size_t i = 0; i < sizeof fault / sizeof *fault; i++)
+        if (number == fault[i]) return false;
+    if (sigaction(number, NULL, &now) != 0 || (now.sa_flags & SA_ONSTACK) != 0) return false;
+    return (now.sa_flags & SA_SIGINFO) != 0 ||
+           (now.sa_handler != SIG_DFL && now.sa_handler != SIG_IGN);
+}
+
+bool fiber_packs(void)
+{
+    bool packs = bound_at_start();
+    for (int number = 1; number < NSIG && packs; number++) packs = !handler_on_own_stack(number);
+    return packs;
+}
+#else
+bool fiber_packs(void) { return false; }
+#endif
+
 struct fiber_pool *fiber_pool_create_packed(int n, struct err *e)
 {
     enum { LARGE_PAGE = 1 << 21 }; /* of x86-64 and aarch64 */
     const size_t page = (size_t)sysconf(_SC_PAGESIZE), bytes = page * (size_t)n;
     struct fiber_pool p = {.n = n, .page = page, .stack_bytes = page, .stride = page};
     p.colours = 1;
-    /* A few of them lie in the large pages of the heap, which are there already. */
+    /* A few of them lie in the large pages of the heap, which are there already. What goes beyond
+     * the lowest stack meets two pages that are nobody's. */
     if (bytes < LARGE_PAGE) {
-        p.base = memory_aligned(page, (size_t)n, page);
+        p.heap = memory_aligned(page, (size_t)n + 2, page);
+        p.base = p.heap + 2 * page;
         memset(p.base, 0, bytes);
         return pool_make(&p);
     }
@@ -219,7 +258,7 @@ void fiber_pool_destroy(struct fiber_pool *p)
     if (!p) return;
     sanitizer_fresh(p->base, p->stride * (size_t)p->room); /* the next one here inherits nothing */
     if (p->mapping) munmap(p->mapping, p->mapped);
-    else free(p->base);
+    free(p->heap);
     arena_destroy(p->arena);
     free(p);
 }

@@ -1,4 +1,6 @@
 /* test_fiber.c - Fibers keep their place and their stacks apart. */
+#include "config.h"
+
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -285,6 +287,26 @@ static void packed_stacks_tell_how_deep_they_were_and_who_went_too_far(void **st
     }
 }
 
+static void on_signal(int number) { (void)number; }
+
+/* A handler that would run on a rank's stack needs most of a page; one with a stack of its own, or
+ * for faults, does not matter. */
+static void stacks_are_packed_unless_a_handler_would_run_there(void **state)
+{
+    (void)state;
+    const bool usual = fiber_packs();
+    struct sigaction before, other = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+#if defined __OPTIMIZE__ && defined __x86_64__ && !defined SANITIZERS && !defined THREAD_SANITIZER
+    assert_true(usual);
+#endif
+    sigaction(SIGUSR1, &other, &before);
+    assert_false(fiber_packs());
+    other.sa_flags |= SA_ONSTACK;
+    sigaction(SIGUSR1, &other, NULL);
+    assert_int_equal(fiber_packs(), usual);
+    sigaction(SIGUSR1, &before, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +317,7 @@ int main(void)
         cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
         cmocka_unit_test(a_pool_is_used_again),
         cmocka_unit_test(filled_pages_have_no_shifted_tops),
+        cmocka_unit_test(stacks_are_packed_unless_a_handler_would_run_there),
         cmocka_unit_test(packed_stacks_tell_how_deep_they_were_and_who_went_too_far),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
