@@ -22,9 +22,9 @@ struct rank_program {
     bool timed, no_synchronous, foreign, leftovers;
     int64_t stack_bytes; /* of each rank, 0: as for built-in programs */
     int depth; /* of the calls of run, as measured [B]; 0: not known. Acts on memory alone */
-    /* deepest: beyond what no call of run goes with this job, at levels loggp and link of an
-     * optimised build [B]: measured for all that the job may ask for, as its stack may have no
-     * guard. 0: not known. NULL: not known. */
+    /* deepest: beyond what no call of run goes with this job at level loggp [B]: measured for all
+     * that the job may ask for, with the compiler and flags that configure knows (KNOWN_DEPTH), as
+     * its stack may have no guard. 0: not known. NULL: not known. */
     int (*deepest)(const void *job);
 };
 

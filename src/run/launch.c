@@ -71,16 +71,21 @@ static bool shares_page(const struct program_run *r, const struct world_load *lo
     return fits_page(r, load, (size_t)r->rank->depth);
 }
 
-/* Whether a page is all the stack that a rank needs, with something to spare, as other compilers
- * may go a little deeper. What goes wrong without guards may not end the job of several processes,
- * and a size that somebody asks for is given. */
-static bool packs(const struct program_run *r, enum network_level level,
-                  const struct world_load *load)
+/* Whether a page is all the stack that a rank needs, with something to spare. A message enters the
+ * network from its sender's stack: where that asks for more than a fixed way to its receiver, there
+ * is no bound. What goes wrong without guards may not end the job of several processes, and a size
+ * that somebody asks for is given. */
+static bool packs(const struct program_run *r, const struct machine_spec *m,
+                  const struct record_spec *record, const struct world_load *load)
 {
     enum { SPARE = 2 * FIBER_PACKED_SPARE };
+    const enum network_level level = m->network.level;
+    const bool fixed = m->network.routing == ROUTING_DETERMINISTIC &&
+                       m->topology.nfailed_link == 0 && m->topology.nfailed_router == 0;
     const size_t deepest = r->rank->deepest ? (size_t)r->rank->deepest(r->job) : 0,
-                 routers = level == LEVEL_LOGGP || level == LEVEL_LINK ? 0 : LAUNCH_ROUTED_DEPTH,
-                 depth = deepest + routers + SPARE;
+                 depth = deepest + (level == LEVEL_LINK ? LAUNCH_LINK_DEPTH : 0) + SPARE;
+    if (level != LEVEL_LOGGP && !(level == LEVEL_LINK && fixed)) return false;
+    if (record->path || record->balance) return false; /* a log that grows on the rank's stack */
     if (deepest == 0 || load->hosts || load->stack_bytes > 0 || !fiber_packs()) return false;
     return load->fills ? fits_page(r, load, depth) : depth <= PAGE;
 }
@@ -220,7 +225,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m,
     load.keeps_outputs = r->divided;
     load.sums = r->order.sums;
     load.fills = !tape && shares_page(r, &load);
-    load.packed = !tape && packs(r, m->network.level, &load);
+    load.packed = !tape && packs(r, m, record, &load);
     struct launch l = {.rank = r->rank, .job = r->job, .tape = tape};
     if (!load.fills && !(l.workspace = make_workspaces(r, &load, tape, scratch, e))) return false;
     load.context = &l;

@@ -27,10 +27,10 @@ void fiber_pool_destroy(struct fiber_pool *p);
 enum { FIBER_PACKED_SPARE = 64 };
 struct fiber_pool *fiber_pool_create_packed(int n, struct err *e);
 
-/* fiber_packs: whether a page may be enough for a fiber at all: in an optimised build for x86-64
- * without sanitizers, whose functions were all found when it began, as the dynamic linker would
- * look for them on the fiber's stack, and while no signal has a handler that would run there:
- * each takes most of a page. */
+/* fiber_packs: whether a page may be enough for a fiber at all: where configure knows how deep
+ * calls go, in a program whose functions were all found when it began, as the dynamic linker would
+ * look for them on the fiber's stack, without a library in front of the system's, and while no
+ * signal has a handler that would run there: each of these takes most of a page. */
 bool fiber_packs(void);
 
 /* fiber_pool_again: a pool whose fibers have all returned, for `n` others: their stacks need not be
