@@ -13,6 +13,7 @@
  * Ways to a target are found by a search backwards when it is first needed, and kept. */
 #include "machine/topology_failed.h"
 
+#include <pthread.h>
 #include <string.h>
 
 #include "base/check.h"
@@ -41,6 +42,7 @@ struct failed {
     int *kept, nkept, most_kept; /* (most_kept) targets whose ways are, a ring: the oldest .. */
     int oldest;                  /* .. gives its place to the next */
     int *distance, *queue; /* (nrouter x PHASES) of the search */
+    pthread_mutex_t lock;  /* of the ways and the arena: threads of one run ask side by side */
 };
 
 static bool leads_up(const struct failed *f, int link)
@@ -115,6 +117,15 @@ static const int *ways_to(struct failed *f, int target)
     return next;
 }
 
+/* The link of such a way from a state: another thread may need the room of the ways next. */
+static int link_to(struct failed *f, int target, int state)
+{
+    pthread_mutex_lock(&f->lock);
+    const int link = ways_to(f, target)[state];
+    pthread_mutex_unlock(&f->lock);
+    return link;
+}
+
 /* Whether the family's route meets only what works. */
 static bool works(const struct failed *f, struct route_cursor c)
 {
@@ -142,7 +153,7 @@ static bool failed_next(const struct topology *t, struct route_cursor *c, struct
     struct failed *f = t->state;
     if (c->stage >= 0) return f->whole->type->next(f->whole, c, h);
     if (c->router == c->target) return false;
-    int phase = -1 - c->stage, link = ways_to(f, c->target)[c->router * PHASES + phase];
+    int phase = -1 - c->stage, link = link_to(f, c->target, c->router * PHASES + phase);
     /* Placement keeps ranks off routers that cannot be reached. */
     CHECK(link >= 0);
     phase = phase_after(f, phase, link);
@@ -318,7 +329,7 @@ static struct failed *failed_make(const struct topology *whole, int64_t kept_byt
 {
     const int n = whole->nrouter, nlink = whole->nlink, states = n * PHASES;
     struct failed *f = TAKE(a, 1, struct failed);
-    *f = (struct failed){.whole = whole, .arena = a};
+    *f = (struct failed){.whole = whole, .arena = a, .lock = PTHREAD_MUTEX_INITIALIZER};
     f->dead_link = TAKE(a, nlink + 1, bool);
     f->dead_router = TAKE(a, n, bool);
     f->from = TAKE(a, nlink + 1, int);

@@ -6,6 +6,8 @@
  * frees any graph of deadlock; a tree needs one class only. */
 #include "machine/topology_graph.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +24,10 @@ struct graph {
     int *from, *to, *port; /* (nlink) of each directed link */
     int *percent;          /* (nlink) of the link rate, NULL: 100 */
     int *weight;           /* (nlink) NULL: 1 */
-    int **next; /* (nrouter) per target: the link to take from every router; NULL until needed */
+    /* (nrouter) per target: the link to take from every router; NULL until needed. Threads of one
+     * run ask side by side: who finds none makes it under the lock, and then shows it */
+    int *_Atomic *next;
+    pthread_mutex_t lock; /* of the search and of the arena */
     int64_t *distance; /* (nrouter) of the search */
     int *queue;        /* (nrouter) of the search */
     bool *waiting;     /* (nrouter) of the search: stands in the queue */
@@ -116,11 +121,8 @@ static int64_t search(struct graph *g, int target)
     return farthest;
 }
 
-/* On demand: a run mostly sends to few of the routers of a large graph. nrouter numbers for each
- * target. */
-static const int *next_links(struct graph *g, int target)
+static int *search_links(struct graph *g, int target)
 {
-    if (g->next[target]) return g->next[target];
     int *next = TAKE(g->arena, g->nrouter, int);
     search(g, target);
     for (int r = 0; r < g->nrouter; r++) {
@@ -128,7 +130,22 @@ static const int *next_links(struct graph *g, int target)
         for (int l = g->first[r]; l < g->first[r + 1] && next[r] < 0; l++)
             if (g->distance[g->to[l]] == g->distance[r] - weight_of(g, l)) next[r] = l;
     }
-    g->next[target] = next;
+    return next;
+}
+
+/* On demand: a run mostly sends to few of the routers of a large graph. nrouter numbers for each
+ * target. */
+static const int *next_links(struct graph *g, int target)
+{
+    int *next = atomic_load_explicit(&g->next[target], memory_order_acquire);
+    if (next) return next;
+    pthread_mutex_lock(&g->lock);
+    next = atomic_load_explicit(&g->next[target], memory_order_relaxed);
+    if (!next) {
+        next = search_links(g, target);
+        atomic_store_explicit(&g->next[target], next, memory_order_release);
+    }
+    pthread_mutex_unlock(&g->lock);
     return next;
 }
 
@@ -181,7 +198,10 @@ bool graph_build(struct topology *t, int nrouter, const struct graph_cable *cabl
 {
     struct graph *g = TAKE(a, 1, struct graph);
     int64_t nlink = 0;
-    *g = (struct graph){.arena = a, .nrouter = nrouter, .tree = ncable == nrouter - 1};
+    *g = (struct graph){.arena = a,
+                        .nrouter = nrouter,
+                        .tree = ncable == nrouter - 1,
+                        .lock = PTHREAD_MUTEX_INITIALIZER};
     for (int i = 0; i < ncable; i++) {
         nlink += 2 * (int64_t)cable[i].parallel;
         if (cable[i].parallel > 1) g->parallel = true;
@@ -197,7 +217,7 @@ bool graph_build(struct topology *t, int nrouter, const struct graph_cable *cabl
     g->port = TAKE(a, n + 1, int);
     g->percent = differ(cable, ncable, false) ? TAKE(a, n + 1, int) : NULL;
     g->weight = differ(cable, ncable, true) ? TAKE(a, n + 1, int) : NULL;
-    g->next = TAKE(a, nrouter, int *);
+    g->next = TAKE(a, nrouter, int *_Atomic);
     g->distance = TAKE(a, nrouter, int64_t);
     g->queue = TAKE(a, nrouter, int);
     g->waiting = TAKE(a, nrouter, bool);

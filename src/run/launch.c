@@ -82,8 +82,10 @@ static bool packs(const struct program_run *r, const struct machine_spec *m,
     const enum network_level level = m->network.level;
     const bool fixed = m->network.routing == ROUTING_DETERMINISTIC &&
                        m->topology.nfailed_link == 0 && m->topology.nfailed_router == 0;
+    const bool formula = level == LEVEL_LOGGP && m->topology.family == TOPOLOGY_TORUS;
     const size_t deepest = r->rank->deepest ? (size_t)r->rank->deepest(r->job) : 0,
-                 depth = deepest + (level == LEVEL_LINK ? LAUNCH_LINK_DEPTH : 0) + SPARE;
+                 depth = deepest + (formula ? 0 : LAUNCH_WAY_DEPTH) +
+                         (load->threads > 1 ? LAUNCH_THREADS_DEPTH : 0) + SPARE;
     if (level != LEVEL_LOGGP && !(level == LEVEL_LINK && fixed)) return false;
     if (record->path || record->balance) return false; /* a log that grows on the rank's stack */
     if (deepest == 0 || load->hosts || load->stack_bytes > 0 || !fiber_packs()) return false;

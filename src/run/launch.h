@@ -28,9 +28,9 @@ const char *launch_alone(const struct program_run *r, const struct machine_spec 
                          const struct record_spec *record, int64_t largest);
 int launch_threads(int asked, int cores, int nrank, bool ordered);
 
-/* How much deeper than what a rank_program calls deepest the calls of a rank go, at most, at level
- * link with fixed ways [B]: some topologies ask more than others. */
-enum { LAUNCH_LINK_DEPTH = 256 };
+/* How much deeper than what a rank_program calls deepest the calls of a rank go, at most [B]: where
+ * a message looks for its way, which is all but level loggp on a torus; on several threads. */
+enum { LAUNCH_WAY_DEPTH = 256, LAUNCH_THREADS_DEPTH = 192 };
 
 /* launch_memory: host memory of the ranks' stacks [B], and in *workspaces of what they work in
  * beside them, of a built-in program that has been prepared: all of it will be touched. */

@@ -1,5 +1,6 @@
 /* test_topology_failed.c - networks of which something does not work: routes meet nothing of it,
  * are free of deadlock, as long as they have to be, and the same as before where nothing failed. */
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -270,6 +271,63 @@ static void ways_are_found_again(void **state)
     arena_destroy(a);
 }
 
+/* One of several threads that ask a network for the lengths of its ways, each in its own order. */
+struct asking {
+    const struct topology *asked;
+    const int *expected; /* (n x n) */
+    int n, first, wrong;
+};
+
+static void *ask_all(void *argument)
+{
+    struct asking *x = argument;
+    for (int i = 0; i < x->n * x->n; i++) {
+        const int k = (i + x->first) % (x->n * x->n), src = k / x->n, dst = k % x->n;
+        if (topology_distance(x->asked, src, dst) != x->expected[k]) x->wrong++;
+    }
+    return NULL;
+}
+
+/* Threads of one run ask the same network for ways that nobody has asked for before; of a few that
+ * may be kept one thread gives away what another one has found. */
+static void threads_find_the_ways_that_one_finds(void **state)
+{
+    (void)state;
+    enum { THREADS = 4, N = 81, TRIALS = 40 };
+    static int pair[2][2] = {{0, 1}, {16, 17}};
+    for (int trial = 0; trial < TRIALS; trial++) {
+        struct arena *a = arena_create(), *other = arena_create();
+        const bool failed = trial % 2 == 1;
+        struct topology_spec s = failed ? topology_spec_of(TOPOLOGY_TORUS, 2, (int[]){9, 9})
+                                        : topology_spec_of(TOPOLOGY_RANDOM_REGULAR, 2,
+                                                           (int[]){N, 4});
+        s.seed = (uint64_t)trial;
+        struct topology *t = topology_made(&s, a), *one = topology_made(&s, other);
+        struct err e;
+        err_clear(&e);
+        if (failed) {
+            s.nfailed_link = 2;
+            s.failed_link = pair;
+            assert_true(topology_fail(t, 3 * N * 16, a, &e));
+            assert_true(topology_fail(one, 3 * N * 16, other, &e));
+        }
+        int expected[N * N];
+        for (int k = 0; k < N * N; k++) expected[k] = topology_distance(one, k / N, k % N);
+        struct asking x[THREADS];
+        pthread_t thread[THREADS];
+        for (int k = 0; k < THREADS; k++) {
+            x[k] = (struct asking){t, expected, N, k * N * N / THREADS / 16, 0};
+            assert_int_equal(pthread_create(&thread[k], NULL, ask_all, &x[k]), 0);
+        }
+        for (int k = 0; k < THREADS; k++) {
+            pthread_join(thread[k], NULL);
+            assert_int_equal(x[k].wrong, 0);
+        }
+        arena_destroy(a);
+        arena_destroy(other);
+    }
+}
+
 static void too_many_routers_are_refused(void **state)
 {
     (void)state;
@@ -328,6 +386,7 @@ int main(void)
         cmocka_unit_test(what_is_not_there_cannot_fail),
         cmocka_unit_test(a_switch_without_nodes_may_be_lost),
         cmocka_unit_test(ways_are_found_again),
+        cmocka_unit_test(threads_find_the_ways_that_one_finds),
         cmocka_unit_test(too_many_routers_are_refused),
         cmocka_unit_test(ranks_are_placed_on_what_works),
     };

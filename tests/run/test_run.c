@@ -418,7 +418,7 @@ static void a_failed_check_says_in_which_run(void **unused)
 /* On packed stacks the depth is known to the word; with whole pages this build has none. Workspace
  * and calls of a rank may go no deeper than the program promises. Returns how much was left, -1:
  * not known. */
-static int64_t left_below(const char *machine, const char *const *set, bool link)
+static int64_t left_below(const char *machine, const char *const *set, int threads)
 {
     struct plan p;
     struct plan_options o = {.machine = machine, .set = set};
@@ -434,16 +434,18 @@ static int64_t left_below(const char *machine, const char *const *set, bool link
     if (!run_open(&spec, NULL, cache, own, &r, &e) || !r.type->prepare(&r, scratch, &e))
         fail_msg("%s: %s", machine, e.text);
     int64_t most = 0;
-    for (int k = 0; k < spec.nrank; k++) {
-        const int64_t bytes = (int64_t)r.rank->workspace_bytes(r.job, k);
-        if (bytes > most) most = bytes;
-    }
+    for (int k = 0; k < spec.nrank; k++)
+        most = (int64_t)fmax((double)most, (double)r.rank->workspace_bytes(r.job, k));
     const int64_t deepest = r.rank->deepest(r.job);
     struct run_result out;
-    const bool made = run_one(&spec, a, &out, &e);
+    const struct run_order order = {.threads = threads};
+    const bool made = run_sharing(&spec, &order, cache, a, &out, &e);
     const bool shared = r.rank->depth > 0 && most + r.rank->depth <= 4096;
+    const bool formula = spec.machine.network.level == LEVEL_LOGGP &&
+                         spec.machine.topology.family == TOPOLOGY_TORUS;
     const int64_t bound =
-        deepest + (shared ? most : 0) + (link ? LAUNCH_LINK_DEPTH : 0);
+        deepest + (shared ? most : 0) + (formula ? 0 : LAUNCH_WAY_DEPTH) +
+        (out.threads > 1 ? LAUNCH_THREADS_DEPTH : 0);
     run_close(&r);
     arena_destroy(own), arena_destroy(scratch), arena_destroy(a);
     run_cache_destroy(cache);
@@ -465,20 +467,19 @@ static void ranks_go_no_deeper_than_their_program_promises(void **unused)
     (void)unused;
 #define ANY(...) one_of(&r, (const char *const[]){__VA_ARGS__, NULL})
     static const char *const kernel[] = {"kernel.name=inverse", "kernel.name=forward",
-                                         "kernel.name=dynamics"},
-                             *const level[] = {"level=loggp", "level=link"};
+                                         "kernel.name=dynamics"};
     struct random r = random_make(20261129, 1, 0);
     int64_t least[3] = {4096, 4096, 4096};
     int known[3] = {0};
     for (int trial = 0; trial < 600; trial++) {
-        const int at = (int)random_below(&r, 2), k = trial % 3,
+        const int k = trial % 3,
                   extra = (int)random_below(&r, 4);
         const char *machine = ANY("t3e-300", "t3e-300", "bluegene-q", "cm-5", "infiniband-hdr",
                                   "slingshot-11", "what-if-dragonfly", "what-if-hyperx",
                                   "what-if-slim-fly", "what-if-random", "ncube-2", "origin2000",
                                   "t3e-300-shmem-adaptive", "paragon", "ideal");
         const char *set[MOST_SETTINGS] = {
-            level[at],
+            ANY("level=loggp", "level=link"),
             strcmp(machine, "t3e-300") == 0 ? ANY("n=2", "n=17", "n=64") : ANY("n=3", "n=16"),
             ANY("model.joint=revolute", "model.joint=mixed", "model.joint=helical",
                 "model.joint=universal", "model.joint=spherical", "model.base=floating",
@@ -504,7 +505,7 @@ static void ranks_go_no_deeper_than_their_program_promises(void **unused)
                 set[n++] = ANY("kernel.step=semi-implicit", "kernel.step=rk4", "kernel.step=kdk");
             }
         }
-        const int64_t left = left_below(machine, set, at == 1);
+        const int64_t left = left_below(machine, set, 1 + (int)random_below(&r, 3));
         if (left >= 0) known[k]++;
         if (left >= 0 && left < least[k]) least[k] = left;
         if (left < -1) {
