@@ -38,6 +38,7 @@ struct program_run {
                              so it may be another run than the one that its config_hash names */
     struct run_order order;      /* how it is executed, a copy; job_run counts its attempts, too */
     struct program_cache *cache; /* what runs share; NULL: nothing */
+    bool packs; /* a page may be stack enough for a rank (fiber_packs); set before open */
     struct arena *arena; /* memory of open: lives as long as this struct */
     const struct run_part *part; /* what of the run this process makes, NULL: all; borrowed */
     void *own;                       /* the program's own, made by open in `arena` */

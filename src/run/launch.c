@@ -88,7 +88,7 @@ static bool packs(const struct program_run *r, const struct machine_spec *m,
                          (load->threads > 1 ? LAUNCH_THREADS_DEPTH : 0) + SPARE;
     if (level != LEVEL_LOGGP && !(level == LEVEL_LINK && fixed)) return false;
     if (record->path || record->balance) return false; /* a log that grows on the rank's stack */
-    if (deepest == 0 || load->hosts || load->stack_bytes > 0 || !fiber_packs()) return false;
+    if (deepest == 0 || load->hosts || load->stack_bytes > 0 || !r->packs) return false;
     return load->fills ? fits_page(r, load, depth) : depth <= PAGE;
 }
 

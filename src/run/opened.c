@@ -8,6 +8,7 @@
 #include "run/part_hosts.h"
 #include "run/run_parts.h"
 #include "schedule/schedule_program.h"
+#include "sim/fiber.h"
 
 struct run_cache *run_cache_create(void)
 {
@@ -16,6 +17,7 @@ struct run_cache *run_cache_create(void)
     c->own = arena_create();
     c->scratch = arena_create();
     c->world = arena_create();
+    c->packs = fiber_packs();
     return c;
 }
 
@@ -68,6 +70,7 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
         return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them",
                        spec->kernel.name);
     r->cache = cache_of(cache, r->type);
+    r->packs = cache->packs;
     if (r->order.hosts && r->order.hosts->size > 1 && !r->order.whole && !spec->jobs) {
         struct run_part *part = TAKE(a, 1, struct run_part);
         *part = part_hosts(r->order.hosts, spec->nrank);

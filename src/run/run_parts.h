@@ -14,6 +14,7 @@ enum { MOST_CACHES = 8, MOST_ATTEMPTS = 16 };
 struct run_cache {
     struct arena *own, *scratch, *world; /* owned; empty between runs */
     struct tapes *tapes; /* owned; NULL: every run is made */
+    bool packs; /* fiber_packs, asked once: 64 calls of the system */
     int n;
     const struct program_type *type[MOST_CACHES]; /* (n) the first of those that share */
     struct program_cache *cache[MOST_CACHES]; /* (n) owned */

@@ -19,6 +19,7 @@
 #include "run/rank_stack.h"
 #include "run/real.h"
 #include "run/run.h"
+#include "sim/fiber.h"
 
 static struct plan plan_of(const char *const *set, int n)
 {
@@ -238,7 +239,8 @@ static void a_rank_deeper_than_was_promised_gets_more(void **state)
                                           .run = deep ? deep_run : shallow_run,
                                           .depth = PROMISED,
                                           .deepest = promised};
-        struct program_run r = {.type = &type, .spec = p.run[0], .rank = &rank};
+        struct program_run r = {
+            .type = &type, .spec = p.run[0], .packs = fiber_packs(), .rank = &rank};
         struct arena *scratch = arena_create(), *a = arena_create();
         struct run_result out = {0};
         struct err e;
