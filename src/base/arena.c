@@ -160,7 +160,7 @@ static struct block *arena_grow(struct arena *a, size_t size, bool full)
     return b;
 }
 
-static inline void *take(struct arena *a, size_t size, bool full)
+void *arena_take_full(struct arena *a, size_t size, bool full)
 {
     /* What a negative number becomes as size_t; rounding up below cannot wrap. */
     if (size >= SIZE_MAX / 2) check_memory(size);
@@ -183,9 +183,7 @@ static inline void *take(struct arena *a, size_t size, bool full)
     return p;
 }
 
-void *arena_take(struct arena *a, size_t size) { return take(a, size, false); }
-
-void *arena_take_full(struct arena *a, size_t size) { return take(a, size, true); }
+void *arena_take(struct arena *a, size_t size) { return arena_take_full(a, size, false); }
 
 char *arena_text(struct arena *a, const char *s)
 {

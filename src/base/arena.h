@@ -31,9 +31,9 @@ void arena_empty(struct arena *a, size_t keep);
  * earlier mark. */
 void *arena_take(struct arena *a, size_t size);
 
-/* arena_take_full: as arena_take, for what will be written from its first byte to its last: it may
- * lie in large pages, where an array that stays sparse would take memory for nothing. */
-void *arena_take_full(struct arena *a, size_t size);
+/* arena_take_full: as arena_take; `full` says that all of it will be written: it may lie in large
+ * pages then, where an array that stays sparse would take memory for nothing. */
+void *arena_take_full(struct arena *a, size_t size, bool full);
 
 /* arena_text: a copy of the string `s` in the arena. */
 char *arena_text(struct arena *a, const char *s);
@@ -57,7 +57,7 @@ size_t arena_peak(const struct arena *a);
  * is a product it is a size_product: what wraps in an int is small again before this macro sees it.
  * A size that does not fit, or is negative, is refused as memory. */
 #define TAKE(a, n, type) ((type *)arena_take((a), size_product((size_t)(n), sizeof(type))))
-#define TAKE_FULL(a, n, type)                                                                      \
-    ((type *)arena_take_full((a), size_product((size_t)(n), sizeof(type))))
+#define TAKE_FULL(a, n, type, full)                                                                \
+    ((type *)arena_take_full((a), size_product((size_t)(n), sizeof(type)), (full)))
 
 #endif

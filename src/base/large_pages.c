@@ -12,11 +12,11 @@
 #include "base/size.h"
 
 #if defined __GLIBC__ && defined MADV_HUGEPAGE && !defined SANITIZERS && !defined THREAD_SANITIZER
-/* LARGE_PAGE: of x86-64 and aarch64. LEAD: small pages before the first of them, which malloc
+/* LEAD: small pages before the first large one, which malloc
  * touches before it is advised. KEPT: address space that the heap takes at a time, and keeps.
  * MAPPED: malloc's own limit for what is mapped apart. LEAST_SHARE: how many times KEPT must be
  * there. */
-enum { LARGE_PAGE = 1 << 21, LEAD = 1 << 15, KEPT = 1 << 26, MAPPED = 1 << 25, LEAST_SHARE = 64 };
+enum { LEAD = 1 << 15, KEPT = 1 << 26, MAPPED = 1 << 25, LEAST_SHARE = 64 };
 
 void large_pages_for_heap(void)
 {

@@ -2,6 +2,8 @@
 #ifndef BASE_LARGE_PAGES_H
 #define BASE_LARGE_PAGES_H
 
+enum { LARGE_PAGE = 1 << 21 }; /* bytes, of x86-64 and aarch64 */
+
 /* large_pages_for_heap: to be called once, before any other thread is there: what the heap holds
  * from then on lies in pages of 2 MiB where the system gives them to who asks, and stays with the
  * process when it is freed, up to 64 MiB. A page costs a fault each time it comes and goes, the

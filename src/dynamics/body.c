@@ -71,8 +71,7 @@ static bool same_frames(const struct model *m, int i, int j)
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     if (REAL_BITS == 64 && REAL_LANES == 1 && m->constants) return m->constants;
-    const bool all = m->end - m->first == m->nbody;
-    struct body *b = all ? TAKE_FULL(a, m->nbody, struct body) : TAKE(a, m->nbody, struct body);
+    struct body *b = TAKE_FULL(a, m->nbody, struct body, m->end - m->first == m->nbody);
     for (int i = m->first; i < m->end; i++) {
         if (i > m->first) b[i] = b[i - 1];
         if (i == m->first || !same_inertia(m, i - 1, i)) b[i].mass = make_mass(m, i, a);

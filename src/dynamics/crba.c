@@ -122,7 +122,7 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
     struct arena_mark mark = arena_mark(d->arena);
     struct work own = {0};
     int n = d->nu;
-    real *mass = TAKE_FULL(d->arena, size_product(n, n), real), *x = TAKE(d->arena, n, real);
+    real *mass = TAKE_FULL(d->arena, size_product(n, n), real, true), *x = TAKE(d->arena, n, real);
     bool good;
     /* The bias forces, which the fast path has, too. */
     rnea(d, q, u, d->zero, x, w);

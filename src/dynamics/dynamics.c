@@ -3,15 +3,6 @@
 
 #include "dynamics/revolute.h"
 
-/* Whether every joint is revolute, and that may be used. */
-static bool all_revolute(const struct model *m)
-{
-    if (m->general_joints) return false;
-    for (int i = m->first; i < m->end; i++)
-        if (m->body[i].joint != JOINT_REVOLUTE) return false;
-    return true;
-}
-
 /* All work arrays at once, six numbers a body and quantity, so that no call allocates. */
 struct dynamics *dynamics_take(const struct model *m, struct arena *a)
 {
@@ -20,7 +11,8 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a)
     d->nbody = m->nbody;
     d->nu = m->nu;
     d->body = bodies_make(m, a);
-    d->revolute = all_revolute(m) ? revolutes_take(m, d->body, a) : NULL;
+    const bool revolute = !m->general_joints && model_all_revolute(m);
+    d->revolute = revolute ? revolutes_take(m, d->body, a) : NULL;
     d->pose = TAKE(a, m->nbody, struct body_pose);
     d->v = TAKE(a, size_product(6, m->nbody), real);
     d->a = TAKE(a, size_product(6, m->nbody), real);

@@ -6,8 +6,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
 {
     /* From the rounded constants, so that both texts compute with the same numbers. */
     const bool all = m->end - m->first == m->nbody;
-    struct revolute *out =
-        all ? TAKE_FULL(a, m->nbody, struct revolute) : TAKE(a, m->nbody, struct revolute);
+    struct revolute *out = TAKE_FULL(a, m->nbody, struct revolute, all);
     for (int i = m->first; i < m->end; i++) {
         struct revolute *r = &out[i];
         const real *j = b[i].mass->jc, half = REAL(0.5);

@@ -189,18 +189,10 @@ static bool is_plain(const struct kernel_job *job)
            !kernel_spec_implicit(k);
 }
 
-static bool all_revolute(const struct model *m)
-{
-    bool revolute = true;
-    for (int i = m->first; i < m->end; i++)
-        revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
-    return revolute;
-}
-
 static int inverse_deepest(const void *job_)
 {
     const struct kernel_job *job = job_;
-    return !is_plain(job) ? 0 : all_revolute(job->model) ? INVERSE_DEPTH : INVERSE_DEEPEST;
+    return !is_plain(job) ? 0 : model_all_revolute(job->model) ? INVERSE_DEPTH : INVERSE_DEEPEST;
 }
 
 static int forward_deepest(const void *job) { return is_plain(job) ? FORWARD_DEEPEST : 0; }

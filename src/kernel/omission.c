@@ -143,9 +143,6 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
                                   : references_tolerance_inverse(k, m->nbody + job->omit.fixed));
     leave_out_add(l, KEEP_SCENES, 0, "scene and serial answers of other runs",
                   "runs of one scene share them");
-    bool revolute = true;
-    for (int i = m->first; i < m->end; i++)
-        revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
     if (job->omit.fixed > 0)
         leave_out_add(l, KEEP_FIXED, bound, "fixed joints",
                       "a body on a fixed joint is merged with the body that carries it");
@@ -156,7 +153,7 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
         leave_out_add(l, k->algebra == ALGEBRA_AUTO ? KEEP_SPATIAL : 0, bound,
                       "out-of-plane components",
                       "all joints move in one plane: three components of six");
-    if (revolute)
+    if (model_all_revolute(m))
         leave_out_add(l, KEEP_GENERAL, 0, "general joints in the serial references",
                       "all joints are revolute");
     if (kernel->does_forward && !kernel->planar && job->spec->record.baselines == BASELINES_NEEDED)

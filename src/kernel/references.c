@@ -204,8 +204,7 @@ static struct work least_work(const struct model *m, enum forward_method method,
     enum { ROW = 415, ACCELERATIONS = 240, BIAS = 330 };
     const uint64_t n = (uint64_t)m->nu;
     struct work w = {0};
-    bool revolute = m->nloop == 0;
-    for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
+    const bool revolute = m->nloop == 0 && model_all_revolute(m);
     if (m->nloop == 0 && dense) dense_tally_forward(m, method, &w);
     /* Cholesky of the mass matrix (physics 2.3) is the part that grows fastest. */
     else if (m->nloop == 0 && method == FORWARD_CRBA) w.flop = n * (n + 1) * (2 * n + 1) / 6;

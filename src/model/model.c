@@ -93,8 +93,7 @@ bool model_reserve(struct model *m, int n, int here, struct err *e)
     snprintf(what, sizeof what, "a model of %d bodies", n);
     if (!size_in_memory(bytes, m->file ? m->file : "", 0, what, e)) return false;
     m->body_room = n;
-    m->body = here < n ? TAKE(m->arena, n, struct body_def) /* a part of them */
-                       : TAKE_FULL(m->arena, n, struct body_def);
+    m->body = TAKE_FULL(m->arena, n, struct body_def, here == n);
     return true;
 }
 

@@ -125,25 +125,24 @@ int model_add_loop(struct model *m, const struct loop_def *def, struct err *e);
  * body at all, more than the limits. */
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e);
 
-/* model_build: the system that `spec` asks for, from the generators; URDF and vector files through
- * urdf.h, vector.h. Returns NULL with *e set. */
+/* model_build: the system that `spec` asks for, generated or from its file. NULL with *e set. */
 struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e);
 
 /* model_divides: whether bodies of the system that `spec` asks for can be made without the others:
  * generated chains whose joints are all revolute. model_part: the system of which bodies first ..
  * end - 1 are here. Whether others have an inertia to invert is not known: has_phi is that of the
- * part. NULL as model_build. */
+ * part. NULL as model_build. model_all_revolute: whether the joints of the bodies here are. */
 bool model_divides(const struct model_spec *spec);
 struct model *model_part(const struct model_spec *spec, int first, int end, struct arena *a,
                          struct err *e);
+bool model_all_revolute(const struct model *m);
 
 /* state_take: a state of m with zeros, identity quaternions and no external forces. */
 struct state *state_take(const struct model *m, struct arena *a);
 
 /* state_given: the pose, rates, torques and external forces that `spec` asks for; seeded, the same
  * on every host. Rates of closed chains need not be consistent with the loops yet
- * (dynamics/system.h makes them so). NULL only when a vector file, readable a moment ago, no longer
- * is. */
+ * (dynamics/system.h makes them so). NULL only when a vector file can no longer be read. */
 struct state *state_given(const struct model *m, const struct model_spec *spec, struct arena *a);
 
 /* state_generate: state_given of all but vector files. */

@@ -20,6 +20,13 @@ bool model_divides(const struct model_spec *spec)
            spec->base != BASE_FLOATING;
 }
 
+bool model_all_revolute(const struct model *m)
+{
+    for (int i = m->first; i < m->end; i++)
+        if (m->body[i].joint != JOINT_REVOLUTE) return false;
+    return true;
+}
+
 struct model *model_part(const struct model_spec *spec, int first, int end, struct arena *a,
                          struct err *e)
 {

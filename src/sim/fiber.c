@@ -15,6 +15,7 @@
 
 #include "base/arena.h"
 #include "base/check.h"
+#include "base/large_pages.h"
 #include "base/memory.h"
 #include "base/size.h"
 #include "sim/guard.h"
@@ -160,8 +161,7 @@ static struct fiber_pool *pool_make(const struct fiber_pool *like)
     *p = *like;
     p->arena = arena_create();
     /* Of processes that share a run each starts some of them, but all of packed ones. */
-    p->fiber = p->below > 0 ? TAKE(p->arena, p->n, struct fiber)
-                            : TAKE_FULL(p->arena, p->n, struct fiber);
+    p->fiber = TAKE_FULL(p->arena, p->n, struct fiber, p->below == 0);
     p->room = p->n;
     return p;
 }
@@ -219,7 +219,6 @@ bool fiber_packs(void) { return false; }
 
 struct fiber_pool *fiber_pool_create_packed(int n, struct err *e)
 {
-    enum { LARGE_PAGE = 1 << 21 }; /* of x86-64 and aarch64 */
     const size_t page = (size_t)sysconf(_SC_PAGESIZE), bytes = page * (size_t)n;
     struct fiber_pool p = {.n = n, .page = page, .stack_bytes = page, .stride = page};
     p.colours = 1;

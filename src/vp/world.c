@@ -68,10 +68,9 @@ void world_make_tables(struct world *w)
     w->extra = more ? TAKE(w->scratch, w->nrank, struct vp_extra) : NULL;
     /* One row more than stages: "end" takes the idle time until the last rank is done. */
     const int row = w->nstage + 1;
-    const size_t rows = size_product(w->nrank, row);
     /* Of processes that share the run each writes its own part. */
-    w->result->stage = w->load->hosts ? TAKE(w->arena, rows, struct stage_time)
-                                      : TAKE_FULL(w->arena, rows, struct stage_time);
+    w->result->stage =
+        TAKE_FULL(w->arena, size_product(w->nrank, row), struct stage_time, !w->load->hosts);
     w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
 }
 
@@ -317,8 +316,7 @@ static void run(struct world *w, uint64_t seed)
     struct run_result *r = w->result;
     double begin = host_seconds();
     world_begin_heartbeat(w, begin);
-    w->vp = w->load->hosts ? TAKE(w->scratch, w->nrank, struct vp)
-                           : TAKE_FULL(w->scratch, w->nrank, struct vp);
+    w->vp = TAKE_FULL(w->scratch, w->nrank, struct vp, !w->load->hosts);
     w->ready = TAKE(w->scratch, w->nrank, struct vp *);
     world_make_tables(w);
     /* Programs of users are watched by whoever loads them. */

@@ -195,7 +195,7 @@ static void full_arrays_lie_in_large_pages_and_sparse_ones_do_not(void **state)
     (void)state;
     const size_t size = (size_t)32 << 20, page = 4096, pages = size / page;
     struct arena *a = arena_create();
-    unsigned char *full = arena_take_full(a, size), *sparse = arena_take(a, size);
+    unsigned char *full = arena_take_full(a, size, true), *sparse = arena_take(a, size);
     long before = faults();
     memset(full, 5, size);
     const long of_full = faults() - before;

@@ -21,7 +21,8 @@ schedule() { "$MIMDSIM_SRCDIR/bench/scale/engine-schedule.sh" "$@"; }
             works mimdsim run engine-$hosts.goal --quiet -o scale.db -m $machine --set level=loggp
         done
     done
-    # 16 strides of 3 sweeps, one of them to both sides, and the first step, at 273 ns, and a body at 2280 ns and 95 ns in each of two sweeps
+    # 16 strides of 3 sweeps, one of them to both sides, and the first step, at 273 ns; a body at 2280 ns, and at 95 ns in
+    # each of two sweeps
     sql_is scale.db "SELECT DISTINCT makespan_ps FROM run WHERE P = 1" $((65536 * (65 * 273 + 2280 + 2 * 95) * 1000))
     sql_is scale.db "SELECT max(makespan_ps) * 3 < (SELECT min(makespan_ps) FROM run WHERE P = 1) FROM run WHERE P = 16" 1
     sql_is scale.db "SELECT (SELECT makespan_ps FROM run WHERE P = 16 AND machine = 'infiniband-ndr') <

@@ -434,8 +434,8 @@ static int64_t left_below(const char *machine, const char *const *set, int threa
     if (!run_open(&spec, NULL, cache, own, &r, &e) || !r.type->prepare(&r, scratch, &e))
         fail_msg("%s: %s", machine, e.text);
     int64_t most = 0;
-    for (int k = 0; k < spec.nrank; k++)
-        most = (int64_t)fmax((double)most, (double)r.rank->workspace_bytes(r.job, k));
+    for (int64_t k = 0, bytes; k < spec.nrank; k++)
+        if ((bytes = (int64_t)r.rank->workspace_bytes(r.job, (int)k)) > most) most = bytes;
     const int64_t deepest = r.rank->deepest(r.job);
     struct run_result out;
     const struct run_order order = {.threads = threads};
