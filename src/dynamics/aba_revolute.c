@@ -3,6 +3,7 @@
  * The articulated inertia [A B; B^T C] is symmetric by storage. After its joint is eliminated, row
  * z of A and B is zero exactly, and so is the force p along it but for tau: none of that is
  * computed. */
+#include "dynamics/dynamics_table.h"
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 
@@ -179,55 +180,204 @@ static inline real accelerate(const struct revolute *body, const struct link *l,
     return z - al[2];
 }
 
-/* The three sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
-static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const real *u,
-                         const real *tau, real *ud)
+/* What the sweeps write, from the first body that is here on. */
+struct sweep {
+    real *sine, *cosine;
+    struct link *link;
+    struct motion *motion; /* velocities outward, then accelerations */
+};
+
+static struct sweep sweep_of(struct dynamics *d)
 {
-    int n = d->nbody;
-    real *sine = d->scratch, *cosine = sine + n;
-    struct link *link = (struct link *)(cosine + n);
-    struct motion *motion = (struct motion *)(link + n), base;
-    /* The base does not turn. */
-    vec3_zero(base.w);
-    /* All angles in one loop that compilers turn into vectors. */
-    angle_sincos_batch(n, q, sine, cosine);
-    for (int i = 0; i < n; i++) {
+    const int n = d->model->end - d->model->first;
+    struct sweep s = {.sine = d->scratch, .cosine = d->scratch + n};
+    s.link = (struct link *)(s.cosine + n);
+    s.motion = (struct motion *)(s.link + n);
+    return s;
+}
+
+/* All angles in one loop that compilers turn into vectors. */
+static void angles(const struct dynamics *d, const struct sweep *s, const real *q)
+{
+    const int first = d->model->first;
+    angle_sincos_batch(d->model->end - first, q + first, s->sine, s->cosine);
+}
+
+/* The three sweeps are called with a constant `at_rest`, so that each case is compiled alone: no
+ * branch on it stands in the loops. `before`: how the base moves, or the body before a part. */
+
+/* Base to tip: velocities, rigid bodies and their forces. */
+static inline void outward(struct dynamics *d, const struct sweep *s, bool at_rest,
+                           const struct motion *before, const real *u)
+{
+    const int first = d->model->first, end = d->model->end;
+    for (int i = first; i < end; i++) {
         const struct revolute *b = &d->revolute[i];
-        struct link *l = &link[i];
-        mat3_turn_z(l->r, b->e, sine[i], cosine[i]);
-        if (at_rest) vec3_zero(l->n), vec3_zero(l->f);
-        else start(b, u[i], b->parent < 0 ? base.w : motion[b->parent].w, motion[i].w, l);
+        struct link *l = &s->link[i - first];
+        mat3_turn_z(l->r, b->e, s->sine[i - first], s->cosine[i - first]);
+        if (at_rest) {
+            vec3_zero(l->n), vec3_zero(l->f);
+        } else {
+            const struct motion *p = b->parent < first ? before : &s->motion[b->parent - first];
+            start(b, u[i], p->w, s->motion[i - first].w, l);
+        }
         rigid(b, l);
         if (d->load) {
             vec3_sub(l->n, d->load + 6 * i);
             vec3_sub(l->f, d->load + 6 * i + 3);
         }
     }
-    /* Tip to base: a body has all its children's parts before it gives way itself. */
-    for (int i = n - 1; i >= 0; i--) {
+}
+
+/* Tip to base: a body has all its children's parts before it gives way itself. */
+static inline bool inward(struct dynamics *d, const struct sweep *s, bool at_rest, const real *tau)
+{
+    const int first = d->model->first;
+    for (int i = d->model->end - 1; i >= first; i--) {
         const struct revolute *b = &d->revolute[i];
-        if (!eliminate(&link[i], at_rest, tau[i])) return false;
-        if (b->parent >= 0) hand_down(b, &link[i], &link[b->parent]);
-    }
-    /* From here on `motion` holds accelerations, and that of the base contains -g (physics 1.6). */
-    vec3_copy(base.w, d->base);
-    vec3_copy(base.v, d->base + 3);
-    for (int i = 0; i < n; i++) {
-        const struct revolute *b = &d->revolute[i];
-        ud[i] = accelerate(b, &link[i], at_rest, b->parent < 0 ? &base : &motion[b->parent],
-                           &motion[i]);
+        struct link *l = &s->link[i - first];
+        if (!eliminate(l, at_rest, tau[i])) return false;
+        if (b->parent >= first) hand_down(b, l, &s->link[b->parent - first]);
     }
     return true;
 }
 
-/* The rest state is compiled apart: no branch on it stands in the sweeps. */
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
-                  struct work *w)
+/* Base to tip; `before` contains -g (physics 1.6). */
+static inline void accelerations(struct dynamics *d, const struct sweep *s, bool at_rest,
+                                 const struct motion *before, real *ud)
+{
+    const int first = d->model->first, end = d->model->end;
+    for (int i = first; i < end; i++) {
+        const struct revolute *b = &d->revolute[i];
+        const struct motion *p = b->parent < first ? before : &s->motion[b->parent - first];
+        ud[i] = accelerate(b, &s->link[i - first], at_rest, p, &s->motion[i - first]);
+    }
+}
+
+static const struct motion still; /* the base does not turn */
+
+static struct motion base_of(const struct dynamics *d)
+{
+    struct motion base;
+    vec3_copy(base.w, d->base);
+    vec3_copy(base.v, d->base + 3);
+    return base;
+}
+
+static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const real *u,
+                         const real *tau, real *ud)
+{
+    const struct sweep s = sweep_of(d);
+    const struct motion base = base_of(d);
+    angles(d, &s, q);
+    outward(d, &s, at_rest, &still, u);
+    if (!inward(d, &s, at_rest, tau)) return false;
+    accelerations(d, &s, at_rest, &base, ud);
+    return true;
+}
+
+static void count(const struct dynamics *d, struct work *w)
 {
     const int body = MAT3_TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
     const int moving = d->at_rest ? ELIMINATE_AT_REST_FLOP + ACCELERATE_AT_REST_FLOP
                                   : START_FLOP + ELIMINATE_FLOP + ACCELERATE_FLOP;
     revolute_count(
         d, (struct revolute_cost){.body = body + moving, .child = HAND_DOWN_FLOP, .div = 1}, w);
+}
+
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
+                  struct work *w)
+{
+    count(d, w);
     return d->at_rest ? sweep(d, true, q, u, tau, ud) : sweep(d, false, q, u, tau, ud);
 }
+
+/* --- a part of a chain ------------------------------------------------------------------------ */
+
+#if REAL_LANES == 1 /* neighbours hand over numbers of one state */
+
+/* What crosses an end: motions; what hand_down adds to a parent's inertia and force. */
+enum { VELOCITY_NUMBERS = 3, ACCELERATION_NUMBERS = 6, HANDED_NUMBERS = 6 + 9 + 6 + 3 + 3 };
+
+/* As numbers of a link and back, in one order. */
+static void handed_numbers(struct link *l, real *number[HANDED_NUMBERS])
+{
+    int n = 0;
+    for (int k = 0; k < 6; k++) number[n++] = &l->a[k], number[n++] = &l->c[k];
+    for (int k = 0; k < 9; k++) number[n++] = &l->b[k];
+    for (int k = 0; k < 3; k++) number[n++] = &l->n[k], number[n++] = &l->f[k];
+}
+
+static bool give_inertia(const struct part_ends *ends, const struct revolute *b,
+                         const struct link *l)
+{
+    struct link handed = {.ez = 0};
+    real *number[HANDED_NUMBERS];
+    double x[HANDED_NUMBERS];
+    hand_down(b, l, &handed);
+    handed_numbers(&handed, number);
+    for (int k = 0; k < HANDED_NUMBERS; k++) x[k] = (double)*number[k];
+    return ends->give(ends->context, false, x, HANDED_NUMBERS);
+}
+
+static bool take_inertia(const struct part_ends *ends, struct link *parent)
+{
+    real *number[HANDED_NUMBERS];
+    double x[HANDED_NUMBERS];
+    if (!ends->take(ends->context, true, x, HANDED_NUMBERS)) return false;
+    handed_numbers(parent, number);
+    for (int k = 0; k < HANDED_NUMBERS; k++) *number[k] += (real)x[k];
+    return true;
+}
+
+/* `n`: of a velocity the angular part, of an acceleration both. */
+static bool take_motion(const struct part_ends *ends, struct motion *m, int n)
+{
+    double x[ACCELERATION_NUMBERS];
+    if (!ends->take(ends->context, false, x, n)) return false;
+    for (int k = 0; k < 3; k++) m->w[k] = (real)x[k];
+    for (int k = 3; k < n; k++) m->v[k - 3] = (real)x[k];
+    return true;
+}
+
+static bool give_motion(const struct part_ends *ends, const struct motion *m, int n)
+{
+    double x[ACCELERATION_NUMBERS];
+    for (int k = 0; k < 3; k++) x[k] = (double)m->w[k];
+    for (int k = 3; k < n; k++) x[k] = (double)m->v[k - 3];
+    return ends->give(ends->context, true, x, n);
+}
+
+/* A joint that gives no way is told at the end: the neighbours wait for numbers, of whatever
+ * worth. */
+static inline bool part(struct dynamics *d, bool at_rest, const real *q, const real *u,
+                        const real *tau, const struct part_ends *ends, real *ud, bool *found)
+{
+    const struct model *m = d->model;
+    const bool has_before = m->first > 0, has_after = m->end < m->nbody;
+    const struct sweep s = sweep_of(d);
+    const int last = m->end - 1 - m->first;
+    struct motion before = still;
+    angles(d, &s, q); /* while the others are not yet here */
+    if (!at_rest && has_before && !take_motion(ends, &before, VELOCITY_NUMBERS)) return false;
+    outward(d, &s, at_rest, &before, u);
+    if (!at_rest && has_after && !give_motion(ends, &s.motion[last], VELOCITY_NUMBERS))
+        return false;
+    if (has_after && !take_inertia(ends, &s.link[last])) return false;
+    *found = inward(d, &s, at_rest, tau);
+    if (has_before && !give_inertia(ends, &d->revolute[m->first], s.link)) return false;
+    before = base_of(d);
+    if (has_before && !take_motion(ends, &before, ACCELERATION_NUMBERS)) return false;
+    accelerations(d, &s, at_rest, &before, ud);
+    return !has_after || give_motion(ends, &s.motion[last], ACCELERATION_NUMBERS);
+}
+
+bool aba_revolute_part(struct dynamics *d, const real *q, const real *u, const real *tau,
+                       const struct part_ends *ends, real *ud, bool *found, struct work *w)
+{
+    count(d, w);
+    return d->at_rest ? part(d, true, q, u, tau, ends, ud, found)
+                      : part(d, false, q, u, tau, ends, ud, found);
+}
+
+#endif

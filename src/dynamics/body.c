@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dynamics/body_constants.h"
+#include "model/model_part.h"
 
 /* One rounding a number: what quad precision holds is exact as far as double is concerned. */
 static void round_to(real *y, const quad *x, int n)
@@ -71,11 +72,12 @@ static bool same_frames(const struct model *m, int i, int j)
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     if (REAL_BITS == 64 && REAL_LANES == 1 && m->constants) return m->constants;
-    struct body *b = TAKE_FULL(a, m->nbody, struct body, m->end - m->first == m->nbody);
-    for (int i = m->first; i < m->end; i++) {
-        if (i > m->first) b[i] = b[i - 1];
-        if (i == m->first || !same_inertia(m, i - 1, i)) b[i].mass = make_mass(m, i, a);
-        if (i == m->first || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i], a);
+    struct body *b = TAKE_FULL(a, m->nbody, struct body, model_whole(m));
+    const int first = model_known_first(m), end = model_known_end(m);
+    for (int i = first; i < end; i++) {
+        if (i > first) b[i] = b[i - 1];
+        if (i == first || !same_inertia(m, i - 1, i)) b[i].mass = make_mass(m, i, a);
+        if (i == first || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i], a);
         body_seat(m, i, &b[i]);
     }
     return b;

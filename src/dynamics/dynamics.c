@@ -84,7 +84,7 @@ void dynamics_velocities(struct dynamics *d, const real *u)
 /* Springs are forces like others; implicit.c treats them otherwise. */
 void springs_add(struct dynamics *d, const real *q, const real *u, real *tau)
 {
-    for (int i = 0; i < d->nbody; i++) {
+    for (int i = d->model->first; i < d->model->end; i++) {
         const struct body *b = &d->body[i];
         body_spring(b, q + b->q_at, u + b->u_at, tau + b->u_at);
     }

@@ -65,6 +65,13 @@ struct dynamics_type {
                          const struct part_ends *ends, struct arena *scratch, double *tau,
                          struct work *w);
 
+    /* forward_part: qdd of the same parts by articulated bodies, springs included; inertias go from
+     * tip to base besides. *found: the method did not break down here; whether it did elsewhere is
+     * not known. False: a neighbour is silent. */
+    bool (*forward_part)(const struct model *m, const struct state *s,
+                         const struct part_ends *ends, struct arena *scratch, double *qdd,
+                         bool *found, struct work *w);
+
     /* hold, inverse_held: inverse for many accelerations qdd (nu) of one state: bodies' constants
      * and the state in this precision are made once, in `a`; no work is counted. */
     struct held *(*hold)(const struct model *m, const struct state *s, struct arena *a);

@@ -5,6 +5,7 @@
 #include "dynamics/integrate.h"
 #include "dynamics/revolute.h"
 #include "dynamics/work_count.h"
+#include "model/model_part.h"
 
 /* A model's numbers in this precision.
  * The state as arrays of `real`; answers go back through to_double. */
@@ -18,8 +19,8 @@ struct problem {
 static real *to_real(const struct model *m, struct arena *a, const double *x, int n)
 {
     real *y = TAKE(a, n, real);
-    const bool part = m->end - m->first < m->nbody;
-    for (int i = part ? m->first : 0; i < (part ? m->end : n); i++) y[i] = (real)x[i];
+    const bool whole = model_whole(m);
+    for (int i = whole ? 0 : m->first; i < (whole ? n : m->end); i++) y[i] = (real)x[i];
     return y;
 }
 
@@ -142,6 +143,24 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     return good;
 }
 
+/* Articulated bodies: no other way from forces to accelerations goes along a chain. */
+static bool forward_part(const struct model *m, const struct state *s,
+                         const struct part_ends *ends, struct arena *scratch, double *qdd,
+                         bool *found, struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch, w);
+    real *out = TAKE(scratch, m->nu, real);
+    CHECK(p.d->revolute && m->is_chain);
+    springs_add(p.d, p.q, p.u, p.tau);
+    work_count_springs(p.d, w);
+    p.d->at_rest = s->at_rest;
+    const bool ok = aba_revolute_part(p.d, p.q, p.u, p.tau, ends, out, found, w);
+    for (int i = m->first; i < m->end; i++) qdd[i] = (double)out[i];
+    arena_release(scratch, mark);
+    return ok;
+}
+
 /* Full and symmetric, (nu x nu), for references. */
 static void mass_matrix(const struct model *m, const struct state *s, struct arena *scratch,
                         double *mass, struct work *w)
@@ -256,6 +275,7 @@ const struct dynamics_type dynamics_type_here = {
     .epsilon = (double)REAL_EPSILON,
     .inverse = inverse,
     .inverse_part = inverse_part,
+    .forward_part = forward_part,
     .hold = hold,
     .inverse_held = inverse_held,
     .forward = forward,

@@ -1,12 +1,13 @@
 /* revolute.c - compact constants of all-revolute systems; what their fast paths execute. */
 #include "dynamics/revolute.h"
 
+#include "model/model_part.h"
+
 /* 22 numbers a body in one piece of memory: what the three sweeps read. */
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
 {
     /* From the rounded constants, so that both texts compute with the same numbers. */
-    const bool all = m->end - m->first == m->nbody;
-    struct revolute *out = TAKE_FULL(a, m->nbody, struct revolute, all);
+    struct revolute *out = TAKE_FULL(a, m->nbody, struct revolute, model_whole(m));
     for (int i = m->first; i < m->end; i++) {
         struct revolute *r = &out[i];
         const real *j = b[i].mass->jc, half = REAL(0.5);

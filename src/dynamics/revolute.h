@@ -32,6 +32,10 @@ struct part_ends;
 bool rnea_revolute_part(struct dynamics *d, const real *q, const real *u, const real *ud,
                         const struct part_ends *ends, real *tau, struct work *w);
 
+/* aba_revolute_part: as rnea_revolute_part; *found: no joint of this part broke it down. */
+bool aba_revolute_part(struct dynamics *d, const real *q, const real *u, const real *tau,
+                       const struct part_ends *ends, real *ud, bool *found, struct work *w);
+
 /* What a fast path executes [flop]: for each body, for each that hangs on another one besides. */
 struct revolute_cost {
     int body, child, div; /* div: divisions a body */

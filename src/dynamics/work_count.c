@@ -29,7 +29,8 @@ void work_count_springs(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
     /* Stiffness and damper are counted together, also where one is zero. */
-    for (int i = 0; i < d->nbody; i++) w->flop += d->body[i].has_spring ? BODY_SPRING_FLOP : 0;
+    for (int i = d->model->first; i < d->model->end; i++)
+        w->flop += d->body[i].has_spring ? BODY_SPRING_FLOP : 0;
 }
 
 /* Only turned bodies compute anything. */

@@ -16,6 +16,7 @@
 #include "kernel/implicit.h"
 #include "kernel/tags.h"
 #include "linalg/dense.h"
+#include "model/model_part.h"
 
 /* Rates of joints lo .. hi-1 are contiguous, bodies being numbered along the chain. */
 int chain_nu(const struct chain_shared *shared, int lo, int hi)
@@ -65,6 +66,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
 {
     const struct model *model = job->model;
     const int n = model->nbody, nrank = job->nrank;
+    const int first = model_known_first(model), end = model_known_end(model);
     struct chain_shared *s = TAKE(a, 1, struct chain_shared);
     unsigned char *size = TAKE(a, n, unsigned char), *interface = TAKE(a, nrank, unsigned char);
     bool picked = true;
@@ -73,12 +75,15 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
         (struct row_layout){.nrow = n, .nrank = nrank, .size = size, .interface = interface};
     /* A spring that is treated linearly implicitly makes all six components of its joint's force
      * unknown (physics 9.0): a row of order 6. Any other joint has one unknown per constraint. */
-    for (int i = model->first; i < model->end; i++) {
+    for (int i = first; i < end; i++) {
         const bool soft = spring_resistance(&s->body[i], implicit_step(job)) > 0;
         size[i] = (unsigned char)(soft ? SPACE : SPACE - s->body[i].d);
         if (size[i] > s->layout.largest) s->layout.largest = size[i];
         picked = picked && body_picks(&s->body[i]);
     }
+    /* Of a part all joints are revolute, here or not (model_divides). */
+    memset(size, SPACE - 1, (size_t)first);
+    memset(size + end, SPACE - 1, (size_t)(n - end));
     /* The rank's last body carries the interface row, which the reduction between ranks sees. */
     s->layout.first = split(size, n, nrank, job->spec->kernel.partition == PARTITION_BALANCED, a);
     for (int k = 0; k < nrank; k++) interface[k] = size[s->layout.first[k + 1] - 1];

@@ -4,8 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "dynamics/planar.h"
 #include "kernel/omission.h"
+#include "model/model_part.h"
 #include "spec/program_list.h"
 
 /* Joints whose axes are twisted against each other leave every plane, and the first two bodies of a
@@ -26,8 +28,11 @@ static bool leaves_the_plane(const struct run_spec *spec)
 bool divided_fits(const struct run_spec *spec, unsigned keep)
 {
     const struct kernel_spec *k = &spec->kernel;
-    const bool inverse = !kernel_spec_has(k, PROGRAM_FORWARD) && k->steps == 0;
-    return inverse && keep == 0 && model_divides(&spec->model) && k->algebra != ALGEBRA_PLANAR &&
+    /* Up to there the mass matrix of all bodies is a serial code, too. */
+    const bool forward = kernel_spec_has(k, PROGRAM_FORWARD);
+    if (forward && spec->model.nbody <= OMISSION_CRBA_MOST) return false;
+    return k->steps == 0 && keep == 0 && model_divides(&spec->model) &&
+           k->algebra != ALGEBRA_PLANAR &&
            k->operators == OPERATORS_STRUCTURED && k->partition != PARTITION_BALANCED &&
            spec->nrank <= spec->model.nbody && leaves_the_plane(spec);
 }
@@ -87,6 +92,31 @@ bool divided_inverse(const struct run_part *p, struct scene *s)
     arena_destroy(scratch);
     x->found = ok && add_work(p, &x->work);
     return x->found;
+}
+
+bool divided_forward(const struct run_part *p, struct scene *s)
+{
+    struct serial_answer *x = &s->forward[FORWARD_ABA];
+    const struct part_ends ends = {p, take, give};
+    bool found;
+    if (x->asked) return true;
+    x->asked = true;
+    x->x = TAKE(s->arena, s->model->nu, double);
+    struct arena *scratch = arena_create();
+    const bool ok = dynamics_type_of(PRECISION_DOUBLE)
+                        ->forward_part(s->model, s->state, &ends, scratch, x->x, &found, &x->work);
+    arena_destroy(scratch);
+    int64_t broken = !found;
+    if (!ok || !add_work(p, &x->work) || !p->sum(p->context, &broken, 1)) return false;
+    x->found = broken == 0;
+    return true;
+}
+
+void divided_silent(struct run_result *out)
+{
+    out->job_broken = true;
+    out->status = RUN_FAILED;
+    text_copy(out->text, sizeof out->text, "a process of the job does not answer");
 }
 
 /* Of numbers that are not negative, the larger one has the larger bits, and a NaN larger ones than

@@ -1,14 +1,15 @@
 /* divided.h - scenes of which each of several processes makes a part, and their serial answers in
  * as many parts.
  *
- * Inverse dynamics of a chain of revolute joints: a rank needs its own bodies alone, and
- * Newton-Euler goes along the chain twice, so that a process computes the reference of its own
- * bodies from what its neighbours hand over. Branches, loops, forward dynamics and planar scenes
- * stay whole. */
+ * Of a chain of revolute joints a rank needs its own bodies and the constants of one on each side.
+ * Newton-Euler goes along the chain twice, articulated bodies three times, so that a process
+ * computes the references of its own bodies from what its neighbours hand over. Branches, loops,
+ * time steps and planar scenes stay whole. */
 #ifndef KERNEL_DIVIDED_H
 #define KERNEL_DIVIDED_H
 
 #include "kernel/scene.h"
+#include "measure/run_result.h"
 #include "program/run_part.h"
 
 /* divided_fits: whether processes may have parts of the scene that `spec` asks for; the same on all
@@ -26,6 +27,12 @@ bool divided_agree(const struct run_part *p, struct model *model, struct state *
 /* divided_inverse: s->inverse for the bodies that are here, with the work of all. False: a process
  * does not answer. */
 bool divided_inverse(const struct run_part *p, struct scene *s);
+
+/* divided_forward: s->forward[FORWARD_ABA] likewise. */
+bool divided_forward(const struct run_part *p, struct scene *s);
+
+/* divided_silent: a process did not answer: the run has failed, and its job is broken. */
+void divided_silent(struct run_result *out);
 
 /* divided_worst: the largest of *difference and of *reference over all processes; a NaN is larger
  * than any number. False as above. */

@@ -42,41 +42,25 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
 /* Host memory of a body, beside the ranks' [B]: the model; then, when the ranks are gone,
  * references in other precisions and serial codes. Peaks of runs with 4,096 to 65,536 bodies on 16
  * to 1,024 ranks (host_peak_bytes), less the rest, of chains whose bodies weigh alike: 320 bytes
- * more where they do not. The last two are what no run was seen to need less than, with the ranks'
- * part. */
+ * more where they do not. */
 enum {
     MODEL_BODY_BYTES = 780,
     INVERSE_BODY_BYTES = 560,
     TREE_BODY_BYTES = 2300,
     LOOP_BODY_BYTES = 4000,
     CHAIN_BODY_BYTES = 3000,
-    LEAST_BODY_BYTES = 1200,
-    LEAST_FORWARD_BODY_BYTES = 3500
+    COUNTED_BODY_BYTES = 720 /* articulated bodies alone: what their arrays have of a body */
 };
-
-extern const struct program_type inverse_program; /* below */
-
-/* Of 10^7 bodies, asked for by a line of text, none is made when they cannot fit: making them takes
- * minutes, and the memory of everybody else. Files are as large as their models. */
-static bool fits_in_memory(const struct program_run *r, const struct run_part *part, struct err *e)
-{
-    const struct model_spec *m = &r->spec.model;
-    if (m->generator == MODEL_URDF || m->generator == MODEL_VECTOR) return true;
-    const int each = r->type == &inverse_program ? LEAST_BODY_BYTES : LEAST_FORWARD_BODY_BYTES;
-    const int n = !part ? m->nbody
-                        : kernel_block(m->nbody, r->spec.nrank, part->end) -
-                              kernel_block(m->nbody, r->spec.nrank, part->first);
-    char what[64];
-    snprintf(what, sizeof what, "a run of %d bodies", n);
-    return size_in_memory(size_product((size_t)n, (size_t)each), "", 0, what, e);
-}
 
 /* The scene belongs to the cache: runs of one campaign that differ in machine or network share it.
  * Its part, if processes divide it; where one of them cannot, all have it whole. */
 static struct scene *take_scene(struct program_run *r, struct err *e)
 {
     const struct run_part *part = divided_fits(&r->spec, r->order.keep) ? r->part : NULL;
-    const bool fits = fits_in_memory(r, part, e);
+    const int n = r->spec.model.nbody, nrank = r->spec.nrank;
+    const int first = part ? kernel_block(n, nrank, part->first) : 0,
+              end = part ? kernel_block(n, nrank, part->end) : n;
+    const bool fits = scene_fits(&r->spec, end - first, e);
     /* The others do not wait for one that cannot hold its part. */
     if (part ? !part->agree(part->context, fits, e) : !fits) return NULL;
     struct scene *s = part ? scene_take(r->cache, &r->spec, r->order.keep, part, e) : NULL;
@@ -186,10 +170,11 @@ static void estimate(const struct program_run *r, struct program_estimate *out)
     const struct dynamics_run *d = dynamics_run_of(r);
     const struct model *m = d->job.model;
     d->kernel->estimate(&r->spec, m, &d->job.omit, out);
-    const int each = !d->kernel->does_forward ? INVERSE_BODY_BYTES
-                     : m->nloop > 0           ? LOOP_BODY_BYTES
-                     : m->is_chain            ? CHAIN_BODY_BYTES
-                                              : TREE_BODY_BYTES;
+    const int each = !d->kernel->does_forward      ? INVERSE_BODY_BYTES
+                     : m->nloop > 0                ? LOOP_BODY_BYTES
+                     : omission_counted(&d->job) ? COUNTED_BODY_BYTES
+                     : m->is_chain                 ? CHAIN_BODY_BYTES
+                                                   : TREE_BODY_BYTES;
     out->model_bytes = (double)m->nbody * MODEL_BODY_BYTES;
     out->reference_bytes = (double)m->nbody * each;
 }

@@ -5,8 +5,7 @@
 #include "kernel/estimate.h"
 #include "kernel/references.h"
 #include "model/lump.h"
-
-enum { BASELINE_MOST = 512 }; /* degrees of freedom of the mass-matrix baseline, see references.h */
+#include "model/model_part.h"
 
 static bool all_zero(const double *x, int n)
 {
@@ -69,8 +68,7 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned 
     if (!kernel)
         err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", k->name);
     /* A part of a model is there only of scenes that are not planar. */
-    const bool part = m && m->end - m->first < m->nbody;
-    if (!kernel || !m || part || k->algebra == ALGEBRA_SPATIAL) return kernel;
+    if (!kernel || !m || !model_whole(m) || k->algebra == ALGEBRA_SPATIAL) return kernel;
     if (k->algebra == ALGEBRA_AUTO)
         return in_plane(spec, keep, m, s) ? kernel_find_planar(k->name, k->precision) : kernel;
     return planar_scene(m, s, k->precision, e) ? kernel_find_planar(k->name, k->precision) : NULL;
@@ -107,6 +105,14 @@ int omission_scene(int nrank, unsigned keep, struct model **m, struct state **s,
     if (keep & KEEP_EXTERNAL) state_fext_need(*s, *m, a);
     (*m)->general_joints = (keep & KEEP_GENERAL) != 0;
     return fixed;
+}
+
+bool omission_counted(const struct kernel_job *job)
+{
+    const struct model *m = job->model;
+    const struct model_spec *spec = &job->spec->model;
+    return !(job->keep & KEEP_BASELINE) && model_divides(spec) && m->has_phi &&
+           m->nbody == spec->nbody && m->nbody > OMISSION_CRBA_MOST;
 }
 
 /* terms: what the kernel's equations do without. Each line names what is left out, its bound (0:
@@ -159,9 +165,12 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
     if (kernel->does_forward && !kernel->planar && job->spec->record.baselines == BASELINES_NEEDED)
         leave_out_add(l, KEEP_BASELINE, 0, "serial codes that cannot be fastest",
                       "record.baselines selects only the needed ones");
-    if (kernel->does_forward && !kernel->planar && m->nu > BASELINE_MOST)
+    if (kernel->does_forward && !kernel->planar && m->nu > OMISSION_CRBA_MOST)
         leave_out_add(l, KEEP_BASELINE, 0, "mass-matrix baseline",
                       "more than 512 degrees of freedom: cubic, never fastest");
+    if (kernel->does_forward && !kernel->planar && omission_counted(job))
+        leave_out_add(l, KEEP_BASELINE, 0, "answers of serial constraint forces",
+                      "each body of a long chain costs the same: its work is counted");
 }
 
 void omission_list(const struct kernel_job *job, const struct kernel_type *kernel,

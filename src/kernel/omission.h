@@ -13,6 +13,9 @@
 #include "program/program.h"
 #include "spec/run_spec.h"
 
+/* Cubic work: above so many degrees of freedom nobody tries the mass matrix. */
+enum { OMISSION_CRBA_MOST = 512 };
+
 /* omission_scene: the scene that the kernels and the serial codes get: bodies on fixed joints
  * become part of others where that leaves enough for all `nrank` ranks; what `keep` (KEEP_* of the
  * order, here and below) puts back is added. Changes *m and *s, replacing them by new ones in `a`
@@ -38,6 +41,11 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, unsigned 
 /* omission_job: what a kernel leaves out in a scene. m, s NULL: kernels without a model. */
 struct job_omit omission_job(const struct run_spec *spec, unsigned keep, const struct model *m,
                              const struct state *s);
+
+/* omission_counted: whether the serial constraint force algorithm is counted and not executed:
+ * generated chains of revolute joints, too long for the mass matrix. Each body of such a chain
+ * costs the same. */
+bool omission_counted(const struct kernel_job *job);
 
 /* omission_list: what a program leaves out by its job's spec, model, state and omit. */
 void omission_list(const struct kernel_job *job, const struct kernel_type *kernel,

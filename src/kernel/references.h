@@ -33,7 +33,7 @@ double references_tolerance_inverse(const struct kernel_spec *k, int n);
 
 /* references_baselines: predicted times, by `price`, of the serial codes on one node, and of the
  * whole parallel work on one processor (out->stage must be filled). CRBA's O(n^3) factorisation is
- * left out above 512 degrees of freedom. */
+ * left out above OMISSION_CRBA_MOST; of the constraint force algorithm's work see omission.h. */
 void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel,
                           struct scene *scene, const struct work_price *price,
                           struct arena *scratch, struct run_result *out);

@@ -1,15 +1,19 @@
 /* scene.c - see scene.h. */
 #include "kernel/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/size.h"
 #include "dynamics/planar_dynamics.h"
 #include "dynamics/system.h"
 #include "kernel/divided.h"
 #include "kernel/kernel.h"
 #include "kernel/omission.h"
+#include "model/model_part.h"
+#include "spec/program_list.h"
 
 /* What may stay in memory beside the scene in use: scenes, and bodies of all of them together. */
 enum { MOST_SCENES = 32, MOST_BODIES = 1 << 17 };
@@ -27,12 +31,31 @@ struct program_cache *scene_cache_create(void)
     return cache;
 }
 
-static void scene_destroy(struct scene *s) { arena_destroy(s->arena); }
+void scene_destroy(struct scene *s)
+{
+    if (s) arena_destroy(s->arena);
+}
 
 void scene_cache_destroy(struct program_cache *cache)
 {
     for (int i = 0; cache && i < cache->nscene; i++) scene_destroy(cache->scene[i]);
     free(cache);
+}
+
+/* Bytes of a body that no run was seen to need less than (host_peak_bytes), ranks included. */
+enum { LEAST_BODY_BYTES = 1200, LEAST_FORWARD_BODY_BYTES = 3500 };
+
+/* Of 10^7 bodies, asked for by a line of text, none is made when they cannot fit: making them takes
+ * minutes, and the memory of everybody else. */
+bool scene_fits(const struct run_spec *spec, int n, struct err *e)
+{
+    const enum model_generator made = spec->model.generator;
+    if (made == MODEL_URDF || made == MODEL_VECTOR) return true;
+    const bool forward = kernel_spec_has(&spec->kernel, PROGRAM_FORWARD);
+    const int each = forward ? LEAST_FORWARD_BODY_BYTES : LEAST_BODY_BYTES;
+    char what[64];
+    snprintf(what, sizeof what, "a run of %d bodies", n);
+    return size_in_memory(size_product((size_t)n, (size_t)each), "", 0, what, e);
 }
 
 /* All bodies, or those of a part's ranks. */
@@ -77,6 +100,11 @@ static struct scene *scene_make(const struct run_spec *spec, unsigned keep,
     if (s->model) err_set(e, ERR_NO_INPUT, "%s can no longer be read", spec->model.path);
     arena_destroy(a);
     return NULL;
+}
+
+struct scene *scene_create(const struct run_spec *spec, unsigned keep, struct err *e)
+{
+    return scene_make(spec, keep, NULL, e);
 }
 
 /* The last scene takes its place: order is kept by `used`, not by position. */

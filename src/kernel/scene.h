@@ -43,12 +43,21 @@ struct scene {
 struct program_cache *scene_cache_create(void);
 void scene_cache_destroy(struct program_cache *cache);
 
+/* scene_fits: whether the system has memory for a run with `n` bodies of the kind that `spec` asks
+ * for; *e says how much is missing. Files are as large as their models: always true. */
+bool scene_fits(const struct run_spec *spec, int n, struct err *e);
+
 /* scene_take: the scene that `spec` asks for, with what `keep` (KEEP_* of the order) puts back,
  * from the cache or made now; borrowed until the next call. `part`: not NULL, what ranks of that
  * part need of it, on all processes or, where one of them cannot make its part, on none (NULL
  * without an error). NULL with *e set when it cannot be built. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, unsigned keep,
                          const struct run_part *part, struct err *e);
+
+/* scene_create, scene_destroy: all of a scene, of which no cache knows. The caller owns it; NULL
+ * with *e set as above. destroy accepts NULL. */
+struct scene *scene_create(const struct run_spec *spec, unsigned keep, struct err *e);
+void scene_destroy(struct scene *s);
 
 /* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler.
  * scene_forward: accelerations by `method`. Computed at the first call. */

@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "kernel/divided.h"
 #include "kernel/dynamics_program.h"
 #include "kernel/estimate.h"
 #include "kernel/references.h"
@@ -23,25 +24,51 @@ static double worst(const double *x, int n)
     return largest;
 }
 
-double trust_residual(const struct program_run *r)
+/* What the ranks that are here have seen. */
+struct seen {
+    double residual, scale; /* the residual is absolute where there is a scale */
+    double condition;
+};
+
+static struct seen seen_by(const struct program_run *r)
 {
     const double *x = program_output(r, OUTPUT_RESIDUAL),
-                 *of = program_output(r, OUTPUT_RESIDUAL_SCALE);
-    double residual = 0, scale = 0;
-    if (!of) return worst(x, r->spec.nrank);
-    for (int i = 0; i < r->spec.nrank; i++) {
-        if (isnan(x[i]) || isnan(of[i])) return NAN;
+                 *of = program_output(r, OUTPUT_RESIDUAL_SCALE),
+                 *condition = program_output(r, OUTPUT_CONDITION);
+    const int first = r->divided ? r->part->first : 0,
+              n = r->divided ? r->part->end - first : r->spec.nrank;
+    struct seen s = {.condition = condition ? worst(condition + first, n) : 0};
+    if (!of) s.residual = x ? worst(x + first, n) : 0;
+    for (int i = first; of && i < first + n && !isnan(s.residual); i++) {
+        const bool none = isnan(x[i]) || isnan(of[i]);
         /* A rank's residual is relative to its own scale; times that scale it is absolute and can
          * be compared. */
-        residual = fmax(residual, x[i] * of[i]);
-        scale = fmax(scale, of[i]);
+        s.residual = none ? NAN : fmax(s.residual, x[i] * of[i]);
+        s.scale = none ? NAN : fmax(s.scale, of[i]);
     }
-    return scale > 0 ? residual / scale : residual;
+    return s;
 }
 
-double trust_condition(const struct program_run *r)
+static double residual_of(const struct seen *s)
 {
-    return worst(program_output(r, OUTPUT_CONDITION), r->spec.nrank);
+    return s->scale > 0 ? s->residual / s->scale : s->residual;
+}
+
+double trust_residual(const struct program_run *r)
+{
+    const struct seen s = seen_by(r);
+    return residual_of(&s);
+}
+
+double trust_condition(const struct program_run *r) { return seen_by(r).condition; }
+
+/* Of the ranks of all processes. False: one does not answer. */
+static bool seen_by_all(const struct program_run *r, struct seen *s)
+{
+    double nothing = 0;
+    *s = seen_by(r);
+    return !r->divided || (divided_worst(r->part, &s->residual, &s->scale) &&
+                           divided_worst(r->part, &s->condition, &nothing));
 }
 
 /* What to do about it: the direct form refines its solution, the paper's form can be replaced by
@@ -125,8 +152,13 @@ void trust_check(const struct program_run *r, struct run_result *out)
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
     /* what the factors lack, the residual would show */
     if (k->residual == RESIDUAL_TWICE) resolved = INFINITY;
-    out->residual = trust_residual(r);
-    out->condition = trust_condition(r);
+    struct seen seen;
+    if (!seen_by_all(r, &seen)) {
+        divided_silent(out);
+        return;
+    }
+    out->residual = residual_of(&seen);
+    out->condition = seen.condition;
     /* a NaN is not to be trusted */
     if (out->residual <= poor && out->condition <= resolved) return;
     out->status = RUN_INVALID;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "linalg/angle.h"
+#include "model/model_part.h"
 #include "model/pose.h"
 
 #define PI 3.14159265358979323846
@@ -303,11 +304,13 @@ struct model *generator_part(const struct model_spec *spec, int first, int end, 
     struct model *m = model_begin(a, NULL);
     const struct model_spec x = in_own_units(spec, m);
     if (!model_reserve(m, spec->nbody, end - first, e)) return NULL;
-    m->nbody = first > 0 ? first - 1 : 0;
-    if (!add_rods(m, &x, end, e)) return NULL;
-    m->nbody = spec->nbody;
     m->first = first;
     m->end = end;
+    m->nbody = spec->nbody;
+    const int known_end = model_known_end(m);
+    m->nbody = first > 2 ? first - 2 : 0;
+    if (!add_rods(m, &x, known_end, e)) return NULL;
+    m->nbody = spec->nbody;
     set_gravity(m, spec);
     return model_finish(m, false, e) ? m : NULL;
 }

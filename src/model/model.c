@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "linalg/eigen.h"
+#include "model/model_part.h"
 
 /* SI until somebody says otherwise. */
 struct model *model_begin(struct arena *a, const char *file)
@@ -240,7 +241,7 @@ static void index_part(struct model *m)
 {
     m->q_at = m->u_at = TAKE(m->arena, m->nbody + 1, int);
     m->row_at = TAKE(m->arena, 1, int);
-    for (int i = m->first; i <= m->end; i++) m->q_at[i] = i;
+    for (int i = model_known_first(m); i <= model_known_end(m); i++) m->q_at[i] = i;
     m->is_chain = m->has_phi = true;
     for (int i = m->first; i < m->end; i++) m->has_phi = m->has_phi && invertible(&m->body[i]);
     m->nq = m->nu = m->q_at[m->nbody] = m->nbody;

@@ -60,7 +60,7 @@ struct loop_def {
 
 struct model {
     int nbody, nq, nu, nloop;
-    int first, end; /* bodies that are here: all, but in model_part; counts are of the whole */
+    int first, end; /* bodies that are here: all, but of a part; counts are of the whole */
     int nrow;                /* constraints of all loops together */
     struct body_def *body;   /* (nbody) */
     struct loop_def *loop;   /* (nloop) */
@@ -128,13 +128,7 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e);
 /* model_build: the system that `spec` asks for, generated or from its file. NULL with *e set. */
 struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e);
 
-/* model_divides: whether bodies of the system that `spec` asks for can be made without the others:
- * generated chains whose joints are all revolute. model_part: the system of which bodies first ..
- * end - 1 are here. Whether others have an inertia to invert is not known: has_phi is that of the
- * part. NULL as model_build. model_all_revolute: whether the joints of the bodies here are. */
-bool model_divides(const struct model_spec *spec);
-struct model *model_part(const struct model_spec *spec, int first, int end, struct arena *a,
-                         struct err *e);
+/* model_all_revolute: whether the joints of all bodies that are here are revolute. */
 bool model_all_revolute(const struct model *m);
 
 /* state_take: a state of m with zeros, identity quaternions and no external forces. */

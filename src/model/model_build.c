@@ -1,6 +1,6 @@
 /* model_build.c - from a spec to a model and its state: which reader or generator. */
 #include "model/generator.h"
-#include "model/model.h"
+#include "model/model_part.h"
 #include "model/urdf_model.h"
 #include "model/vector_model.h"
 

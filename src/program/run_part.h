@@ -3,8 +3,8 @@
  *
  * Room program knows no processes: whoever makes the run hands over these calls. All processes call
  * the same ones in the same order. Where open divides a run, it does so on all processes; outputs
- * stay where they were published, check and baselines are called on all, and what they tell counts
- * on process 0. */
+ * stay where they were published; judge, check and baselines are called on all, and what they tell
+ * counts on process 0. */
 #ifndef PROGRAM_RUN_PART_H
 #define PROGRAM_RUN_PART_H
 

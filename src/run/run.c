@@ -63,7 +63,7 @@ static bool attempt(struct program_run *r, struct run_cache *c, struct arena *a,
     arena_empty(c->world, KEPT_BYTES);
     if (!ok) return false;
     out->residual = out->measured_s = NAN;
-    if (out->status == RUN_OK && chief(r) && r->type->judge) r->type->judge(r, out);
+    if (out->status == RUN_OK && (chief(r) || r->divided) && r->type->judge) r->type->judge(r, out);
     return true;
 }
 

@@ -221,5 +221,5 @@ takes_as_told() {
     # inverse dynamics solves nothing that could need it
     [ "$(told host_bytes_again "${run[@]}" --set kernel=inverse)" -eq 0 ]
     works mimdsim explain "${run[@]}"
-    stdout_says 'if an answer needs refinement: 126 MB'
+    stdout_says 'if an answer needs refinement: 118 MB'
 }

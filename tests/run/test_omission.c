@@ -368,6 +368,42 @@ static void serial_codes_left_out_are_never_the_fastest(void **state)
     assert_true(left_out > 40);
 }
 
+/* Of long chains the serial constraint force algorithm is counted: executed, it costs the same. */
+static void work_that_is_counted_is_the_work_that_is_done(void **state)
+{
+    (void)state;
+    static const struct run_order order = {.keep = KEEP_BASELINE};
+    int same = 0;
+    for (int number = 0; number < 24; number++) {
+        struct run_cache *cache = run_cache_create();
+        struct arena *a = arena_create();
+        struct run_spec spec = draw(number);
+        struct run_result counted, done;
+        struct err e = {0};
+        snprintf(spec.kernel.name, sizeof spec.kernel.name, number % 2 ? "forward" : "dynamics");
+        spec.kernel.steps = 0;
+        spec.kernel.algebra = ALGEBRA_SPATIAL;
+        spec.machine.network.level = LEVEL_LOGGP;
+        spec.machine.node.div_cycles = 7, spec.machine.node.sqrt_cycles = 11;
+        spec.machine.node.trig_cycles = 13, spec.machine.node.call_time = 17e-9;
+        spec.model.generator = MODEL_SERIAL_CHAIN;
+        spec.model.joint = JOINT_REVOLUTE;
+        spec.model.nbody = 513 + number;
+        if (spec.model.base == BASE_FLOATING) spec.model.base = BASE_FIXED;
+        if (!run_one(&spec, a, &counted, &e) || !run_sharing(&spec, &order, cache, a, &done, &e))
+            fail_msg("%s", e.text);
+        for (int i = 0; i < counted.nbaseline; i++) {
+            const struct baseline *b = &counted.baseline[i];
+            if (!strstr(b->name, "cfa")) continue;
+            assert_int_equal(b->time_ps, baseline_of(&done, b->name)->time_ps);
+            same++;
+        }
+        run_cache_destroy(cache);
+        arena_destroy(a);
+    }
+    assert_int_equal(same, 48);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +411,7 @@ int main(void)
         cmocka_unit_test(a_changed_digit_is_seen),
         cmocka_unit_test(a_wrong_omission_is_seen),
         cmocka_unit_test(serial_codes_left_out_are_never_the_fastest),
+        cmocka_unit_test(work_that_is_counted_is_the_work_that_is_done),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
