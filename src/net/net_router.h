@@ -80,11 +80,12 @@ struct lane {
     struct route_option *option; /* (noption) of the front, none: to its node */
     int room;                    /* options that there is memory for, */
     int16_t channel;             /* of its port */
-    bool bars, tried;            /* an option without a channel spoils its turn; see router.tried */
+    bool bars;                   /* an option without a channel spoils its turn */
     struct route_option few[LANE_OPTIONS]; /* memory for the options of most */
     /* Of one allocation: */
     int pick_priority;
     struct lane *match, *wish, *fresh, *pick; /* given; intended for; in this round; accepted */
+    sim_ps retry; /* it took part in one and does not before then (router_tries) */
 };
 
 /* A link, or a node's way in or out. */
@@ -108,8 +109,8 @@ enum { ROUTER_POSTED = 3, ROUTER_LANE_AGAIN = NET_LANE_ARBITRATE + 1 /* a second
 
 struct router {
     struct lane *busy;
-    sim_ps wake, tried;           /* 1 + its next event, the last instant that lanes tried in; 0 */
-    sim_ps again;                 /* when those lanes come back */
+    sim_ps wake;                  /* 1 + its next event, or 0 */
+    sim_ps retry;                 /* until when some lane has to wait after an allocation */
     sim_ps posted[ROUTER_POSTED]; /* 1 + times of events that were posted and are to come, or 0 */
 };
 

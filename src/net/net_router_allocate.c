@@ -309,11 +309,10 @@ static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
     for (struct lane *v = g->router[r].busy; v; v = v->busy) {
         if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
         const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
-        if (at > now) {
-            *again = router_sooner(*again, at);
-            continue;
-        }
-        if (!v->tried) g->active[n++] = v;
+        if (at > now || v->retry > now)
+            *again = router_sooner(*again, router_later(at, v->retry));
+        else
+            g->active[n++] = v;
     }
     return n;
 }
@@ -379,8 +378,7 @@ static sim_ps look_single(struct routers *g, struct lane *v, sim_ps now)
 {
     if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
     const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
-    if (at > now) return at;
-    if (v->tried) return SIM_NEVER;
+    if (at > now || v->retry > now) return router_later(at, v->retry);
     if (v->state != LANE_ASKING || g->single) return router_pass(g, v, now);
     g->active[0] = v;
     return allocate_together(g, 1, now);
@@ -433,13 +431,6 @@ static __attribute__((noinline)) sim_ps look_slowly(struct routers *g, int r, si
     return g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
 }
 
-/* Another instant: all may try again. */
-static void tries_forget(struct router *o)
-{
-    o->tried = 0;
-    for (struct lane *v = o->busy; v; v = v->busy) v->tried = false;
-}
-
 void router_look_at(struct routers *g, int r, sim_ps now)
 {
     struct router *o = &g->router[r];
@@ -448,11 +439,8 @@ void router_look_at(struct routers *g, int r, sim_ps now)
     o->wake = 0;
     g->now = now;
     if (!o->busy) return;
-    if (o->tried && o->tried != now + 1) tries_forget(o);
-    if (o->tried || !g->quick || !look_quickly(g, o->busy, now, &again))
+    if (o->retry > now || !g->quick || !look_quickly(g, o->busy, now, &again))
         again = look_slowly(g, r, now);
-    /* Who tried before in this instant comes back as it said then. */
-    if (o->tried) o->again = again = router_sooner(again, o->again);
     if (again != SIM_NEVER) router_wake(g, r, again);
 }
 

@@ -25,7 +25,6 @@ static inline void busy_leave(struct lane *v)
     *v->busy_link = v->busy;
     if (v->busy) v->busy->busy_link = v->busy_link;
     v->busy_link = NULL;
-    v->tried = false;
 }
 
 /* router_front_comes: the head of v's front is there, or on its way: it is routed when it is there

@@ -136,7 +136,9 @@ static void alone_router(void *subject, uint64_t argument, sim_ps now)
 }
 
 /* Event: the time of something that had no slot has come. If it still has none, it is looked at by
- * itself. argument: the number of a resource (of a node's port), then of routers. */
+ * itself. Also what an earlier look has overtaken has its turn in this instant, since it may be
+ * asked for again before that comes. argument: the number of a resource (of a node's port), then of
+ * routers. */
 static void enter(void *subject, uint64_t argument, sim_ps now)
 {
     struct routers *g = subject;
@@ -144,7 +146,6 @@ static void enter(void *subject, uint64_t argument, sim_ps now)
     const uint64_t resources = (uint64_t)n->nresource;
     const bool source = argument < resources;
     const int i = (int)(source ? argument : argument - resources);
-    if ((source ? g->fabric.resource[i].wake : g->router[i].wake) != now + 1) return;
     struct gather_slot *s = slot_of(g, now);
     if (s) gather_set_add(source ? &s->source : &s->router, i);
     else
@@ -194,9 +195,10 @@ bool router_gather(struct net *n)
     g->fabric.wake = post_source;
     g->post = post_gathered;
     g->fabric.ahead = true;
-    /* At different rates who lost comes back too late for some turns, and where packets must fit,
-     * who finds no room does not know when to come back: there a look without need is none. */
-    g->spares = g->even && !n->routing->fits;
+    /* At different rates who lost comes back too late for some turns; where packets must fit, who
+     * finds no room does not know when to come back; and where credits are back at once, the order
+     * of looks counts: there a look without need is none. */
+    g->spares = g->even && !n->routing->fits && g->credit > 0;
     g->quick = g->spares && g->single;
     return true;
 }

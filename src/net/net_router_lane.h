@@ -84,14 +84,11 @@ static inline int32_t router_unit(const struct routers *g, const struct worm *w)
     return g->whole ? w->flits : 1;
 }
 
-/* router_tries: v takes part in an allocation of this instant, and so in no other one: who gets
- * nothing comes back a flit later, whether the router is looked at again at once or not. */
+/* router_tries: v takes part in an allocation now, and in no other one for a flit: who gets nothing
+ * comes back then, whether somebody else has the router looked at before or not. */
 static inline void router_tries(const struct routers *g, struct lane *v)
 {
-    struct router *o = &g->router[v->of->to];
-    v->tried = true;
-    if (!o->tried) o->again = SIM_NEVER;
-    o->tried = g->now + 1;
+    v->retry = g->router[v->of->to].retry = g->now + g->fabric.fastest;
 }
 
 /* router_out: the port that option o of lane v's front leads over; o NULL: out of the network. */
