@@ -182,7 +182,7 @@ static struct clocked *clocked_make(struct net *n, const struct clocked_list *q,
     g->nrouter = n->topology->nrouter;
     g->nnode = n->nnode;
     g->bytes = -1;
-    g->start = TAKE(n->arena, q->count + 1, int32_t);
+    g->start = TAKE_FULL(n->arena, q->count + 1, int32_t, true);
     g->router = TAKE(n->arena, g->nrouter, struct clocked_router);
     return g;
 }
@@ -312,7 +312,7 @@ bool net_clocked(struct net *n, const struct clocked_list *q, struct clocked_res
     ports_fill(g, from);
     if (!lanes_make(g, longest, gap)) return false;
     g->longest = longest;
-    g->next = TAKE(n->arena, q->count + 1, int32_t);
+    g->next = TAKE_FULL(n->arena, q->count + 1, int32_t, true);
     routing_keep(n->routing, n->arena);
     /* All steps together take as long as some messages. */
     if (q->count > g->nrouter * g->nrouter / 8) g->steps = routing_steps(n->routing, n->arena);

@@ -131,7 +131,7 @@ static void dependents_make(struct replay *r, struct arena *a)
 {
     const struct traffic *q = r->q;
     int n = q->nmessage;
-    r->waits = TAKE(a, n + 1, int);
+    r->waits = TAKE_FULL(a, n + 1, int, true);
     if (!q->dep_first) return;
     r->out_first = TAKE(a, n + 2, int);
     r->out = TAKE(a, q->dep_first[n] + 1, int);
@@ -167,7 +167,7 @@ static int *sort_by_time(int *list, int *swap, int n, const sim_ps *time)
 static void initial_make(struct replay *r, struct arena *a)
 {
     int n = r->q->nmessage;
-    int *list = TAKE(a, n + 1, int), *swap = TAKE(a, n + 1, int);
+    int *list = TAKE_FULL(a, n + 1, int, true), *swap = TAKE_FULL(a, n + 1, int, true);
     for (int m = 0; m < n; m++)
         if (r->waits[m] == 0) list[r->ninitial++] = m;
     r->initial = sort_by_time(list, swap, r->ninitial, r->q->time);
@@ -189,7 +189,7 @@ static void replay_make(struct replay *r, struct arena *a)
     const struct traffic *q = r->q;
     int n = q->nmessage;
     r->arena = a;
-    r->ready = TAKE(a, n + 1, sim_ps);
+    r->ready = TAKE_FULL(a, n + 1, sim_ps, true);
     for (int m = 0; m < n; m++) r->ready[m] = q->time[m];
     dependents_make(r, a);
     initial_make(r, a);
