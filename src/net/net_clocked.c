@@ -43,16 +43,18 @@ static bool network_is_even(const struct net *n, const struct routers *g)
     return n->port_private && n->in_flight == 0;
 }
 
-/* In which cycle each message starts, and how long the longest is. False: one starts between two,
- * or is more than a packet, or the last one may end too late: even if all of them had to go one
- * after the other, hop by hop. That spares a run in vain; what decides is the clock in play. */
-static bool list_is_even(struct clocked *g, int32_t gap, int32_t *longest)
+/* In which cycle each message starts, and how long the longest and the shortest are. False: one
+ * starts between two, or is more than a packet, or the last one may end too late: even if all of
+ * them had to go one after the other, hop by hop. That spares a run in vain; what decides is the
+ * clock in play. */
+static bool list_is_even(struct clocked *g, int32_t gap)
 {
     const struct clocked_list *q = g->list;
     const double per_unit = 1.0 / (double)g->unit;
     const int64_t hop = g->tau + g->credit + g->longest_wire + g->pause + gap + 4;
     int64_t flits = 0, all = 0, bytes = -1;
-    *longest = 0;
+    g->longest = 1;
+    g->shortest = MOST_WHEEL;
     /* Many messages have one size, and a division takes long. */
     for (int m = 0; m < q->count; m++) {
         const sim_ps time = q->time[m];
@@ -65,7 +67,8 @@ static bool list_is_even(struct clocked *g, int32_t gap, int32_t *longest)
             flits =
                 net_packets(g->net, bytes) == 1 ? net_packet_flits(g->net, bytes, 0) : MOST_WHEEL;
             if (flits >= MOST_WHEEL || (g->whole && flits > g->buffer)) return false;
-            if (flits > *longest) *longest = (int32_t)flits;
+            g->longest = clocked_later(g->longest, (int32_t)flits);
+            g->shortest = clocked_sooner(g->shortest, (int32_t)flits);
         }
         all += (flits + hop) * (g->routing->max_hops + 2);
         if (k + all >= MOST_LAST) return false;
@@ -187,17 +190,25 @@ static struct clocked *clocked_make(struct net *n, const struct clocked_list *q,
     return g;
 }
 
+/* What a lane remembers at a time: of flits, those that it holds or whose credits are not back, and
+ * those that are sent ahead; of packets that have left, as many as these flits may be. */
+static int32_t places_needed(const struct clocked *g)
+{
+    if (!g->whole) return g->buffer + ROUTER_AHEAD;
+    return (g->buffer + g->longest) / clocked_later(g->shortest, 1) + 4;
+}
+
 /* The wheel and the lanes; false where they would be too many bytes. The wheel has four times the
  * longest time from a look to what it posts: a packet and its gap, and a hop with its credit. */
-static bool lanes_make(struct clocked *g, int32_t longest, int32_t gap)
+static bool lanes_make(struct clocked *g, int32_t gap)
 {
     struct arena *a = g->net->arena;
-    const int64_t ahead = 4 * (int64_t)(longest + ROUTER_AHEAD + gap + g->tau + g->longest_wire +
+    const int64_t ahead = 4 * (int64_t)(g->longest + ROUTER_AHEAD + gap + g->tau + g->longest_wire +
                                         g->credit + g->setup + g->pause);
     const size_t lanes = (size_t)g->nport * g->nchannel;
-    g->ring = g->wheel = 1;
-    while (g->ring + 1 < g->buffer + ROUTER_AHEAD) g->ring = 2 * g->ring + 1;
-    while (1 << g->shift <= g->ring) g->shift++;
+    g->wheel = 1;
+    g->ring = CLOCKED_ROW - 1;
+    while (g->ring + 1 < places_needed(g)) g->ring = 2 * g->ring + 1;
     while (g->wheel < ahead) g->wheel = 2 * g->wheel + 1;
     g->router_words = g->nrouter / CLOCKED_WORD + 1;
     g->words = g->router_words + g->nnode / CLOCKED_WORD + 1;
@@ -212,6 +223,7 @@ static bool lanes_make(struct clocked *g, int32_t longest, int32_t gap)
     }
     g->again = TAKE(a, g->router_words, uint64_t);
     g->stay = TAKE(a, places, union clocked_stay);
+    g->stay_row = (int32_t)lanes * CLOCKED_ROW;
     g->option = TAKE(a, size_product(lanes, CLOCKED_OPTIONS), struct route_option);
     g->match = TAKE(a, lanes, struct clocked_match);
     g->side = TAKE(a, g->nport, struct clocked_side);
@@ -303,15 +315,14 @@ bool net_clocked(struct net *n, const struct clocked_list *q, struct clocked_res
 {
     if (n->type != &net_routed_packet && n->type != &net_routed_flit) return false;
     const struct routers *from = n->state;
-    int32_t longest, gap = 0;
+    int32_t gap = 0;
     if (!network_is_even(n, from)) return false;
     struct clocked *g = clocked_make(n, q, r);
     for (int i = 0; i < n->nport; i++)
         gap = clocked_later(gap, (int32_t)(n->port[i].gap / g->unit));
-    if (!list_is_even(g, gap, &longest) || !ports_make(g, from)) return false;
+    if (!list_is_even(g, gap) || !ports_make(g, from)) return false;
     ports_fill(g, from);
-    if (!lanes_make(g, longest, gap)) return false;
-    g->longest = longest;
+    if (!lanes_make(g, gap)) return false;
     g->next = TAKE_FULL(n->arena, q->count + 1, int32_t, true);
     routing_keep(n->routing, n->arena);
     /* All steps together take as long as some messages. */

@@ -16,16 +16,16 @@ CLOCKED_INLINED void flits_note(struct clocked *g, struct clocked_lane *v, struc
 {
     union clocked_stay *stay = clocked_ring(g, v);
     if (whole) {
-        stay += v->nleft++ & g->ring;
+        stay += clocked_place(g, v->nleft++);
         stay->position = v->out;
         stay->at = now;
         return;
     }
-    for (int32_t k = 0; k < flits; k++) stay[(v->out + k) & g->ring].go = now + k;
+    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, v->out + k)].go = now + k;
     if (v->head.noption == 0) return;
     stay = clocked_ring(g, out);
     const int32_t come = now + g->reach + p->wire;
-    for (int32_t k = 0; k < flits; k++) stay[k].come = come + k;
+    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, k)].come = come + k;
 }
 
 /* The way on of out's front l, which has none behind it: mostly a step of the table. */
@@ -76,7 +76,7 @@ static inline bool flits_follow(const struct clocked *g, const struct clocked_ro
 {
     if (v->in - v->out < flits || flits > ROUTER_AHEAD || flits > g->buffer) return false;
     /* They come one after the other: the last one says it of all. */
-    if (clocked_ring(g, v)[(v->out + flits - 1) & g->ring].come > now + flits - 1) return false;
+    if (clocked_stay(g, v, v->out + flits - 1)->come > now + flits - 1) return false;
     const bool alone = (o->busy & (o->busy - 1)) == 0;
     return flits == 1 ||
            now + flits <= (alone ? now + g->tau : clocked_undisputed(g, v, in, v->way, now));

@@ -71,11 +71,26 @@ static inline uint64_t clocked_ways(const struct clocked_lane *v)
     return v->head.noption > 1 ? way | UINT64_C(1) << v->other : way;
 }
 
-/* clocked_ring: what v remembers of flits, or of packets that have left. */
+/* clocked_ring: what v remembers of flits, or of packets that have left; clocked_place: where
+ * number n of it is; clocked_stay: both.
+ *
+ * A ring is a column of cache lines, those of all lanes side by side: as a lane that is clear
+ * counts anew, mostly only the first line is used, and these lie one after the other, however large
+ * the buffers are. */
 static inline union clocked_stay *clocked_ring(const struct clocked *g,
                                                const struct clocked_lane *v)
 {
-    return g->stay + ((v - g->lane) << g->shift);
+    return g->stay + (v - g->lane) * CLOCKED_ROW;
+}
+static inline ptrdiff_t clocked_place(const struct clocked *g, int32_t n)
+{
+    const uint32_t k = (uint32_t)n & (uint32_t)g->ring;
+    return (ptrdiff_t)(k / CLOCKED_ROW) * g->stay_row + k % CLOCKED_ROW;
+}
+static inline union clocked_stay *clocked_stay(const struct clocked *g,
+                                               const struct clocked_lane *v, int32_t n)
+{
+    return clocked_ring(g, v) + clocked_place(g, n);
 }
 
 /* clocked_gone: when flit number `last` of v left: level packet. It is one of the packets that left
@@ -86,8 +101,8 @@ static inline int32_t clocked_gone(const struct clocked *g, const struct clocked
     const union clocked_stay *ring = clocked_ring(g, v);
     int32_t k = v->nleft - 1;
     if (v->out - last > 4 * g->longest) k -= (v->out - 1 - last) / g->longest;
-    while (ring[k & g->ring].position > last) k--;
-    return ring[k & g->ring].at + last - ring[k & g->ring].position;
+    while (ring[clocked_place(g, k)].position > last) k--;
+    return ring[clocked_place(g, k)].at + last - ring[clocked_place(g, k)].position;
 }
 
 /* clocked_room: from which cycle on (>= now) `flits` flits may enter v, a lane of p, one after the
@@ -108,7 +123,7 @@ CLOCKED_INLINED int32_t clocked_room(const struct clocked *g, struct clocked_lan
         return CLOCKED_NEVER;
     }
     if (last < 0) return now;
-    const int32_t go = whole ? clocked_gone(g, v, last) : clocked_ring(g, v)[last & g->ring].go;
+    const int32_t go = whole ? clocked_gone(g, v, last) : clocked_stay(g, v, last)->go;
     return clocked_later(now, go + late - (flits - 1));
 }
 

@@ -59,7 +59,7 @@ static inline void packet_crosses(struct clocked *g, struct clocked_lane *v, str
                                   struct clocked_lane *out, bool sink, int32_t now)
 {
     const int32_t flits = v->front->flits;
-    union clocked_stay *stay = &clocked_ring(g, v)[v->nleft++ & g->ring];
+    union clocked_stay *stay = clocked_stay(g, v, v->nleft++);
     stay->position = v->out;
     stay->at = now;
     v->out += flits;
@@ -81,7 +81,7 @@ static int32_t competes(const struct clocked *g, const struct clocked_lane *v,
     if (w->head.state == LANE_SENDING) {
         left -= w->front->ahead->sent;
         if (meets)
-            return w->out < w->in ? clocked_ring(g, w)[w->out & g->ring].come : now + g->reach;
+            return w->out < w->in ? clocked_stay(g, w, w->out)->come : now + g->reach;
     } else if (meets) {
         return w->due;
     }
@@ -110,13 +110,13 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
                                   int32_t *last)
 {
     /* From crossing to standing at the next router; flits that v has, or will have. */
-    const int32_t way = g->reach + p->wire, ring = g->ring, here = v->in - v->out;
+    const int32_t way = g->reach + p->wire, here = v->in - v->out;
     union clocked_stay *const from = clocked_ring(g, v), *const to = clocked_ring(g, out);
     int32_t k = v->out, at = now, sent = 1;
-    from[k++ & ring].go = now;
+    from[clocked_place(g, k++)].go = now;
     v->out = k;
     out->clear = CLOCKED_NEVER;
-    if (!sink) to[out->in++ & ring].come = now + way;
+    if (!sink) to[clocked_place(g, out->in++)].come = now + way;
     *last = now;
     if (most > here) most = here;
     if (most > ROUTER_AHEAD) most = ROUTER_AHEAD;
@@ -124,16 +124,17 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
     const int32_t until = clocked_undisputed(g, v, in, p, now);
     /* Mostly all credits are there. */
     const int32_t needed = out->in + most - 2 - g->buffer;
-    const bool room = sink || needed < 0 ||
-                      (needed < out->out && to[needed & ring].go + g->credit + p->wire <= now);
+    const bool room =
+        sink || needed < 0 ||
+        (needed < out->out && to[clocked_place(g, needed)].go + g->credit + p->wire <= now);
     /* The next flit goes when it is there, the one before has gone, and its credit is back. */
     for (; sent < most; sent++) {
-        at = clocked_later(from[k & ring].come, at + 1);
+        at = clocked_later(from[clocked_place(g, k)].come, at + 1);
         if (at < until && !room) at = clocked_room(g, out, p, 1, at, false);
         if (at >= until) break;
-        from[k++ & ring].go = *last = at;
+        from[clocked_place(g, k++)].go = *last = at;
         v->out = k;
-        if (!sink) to[out->in++ & ring].come = at + way;
+        if (!sink) to[clocked_place(g, out->in++)].come = at + way;
     }
     if (sent > 1) clocked_crosses(in, p); /* alone it would have won every round */
     return sent;
@@ -167,7 +168,7 @@ static inline void rest_waits(struct clocked *g, const struct clocked_lane *v,
 {
     if (v->out < v->in)
         clocked_wake(g, in->to,
-                     clocked_later(in->passed, clocked_ring(g, v)[v->out & g->ring].come));
+                     clocked_later(in->passed, clocked_stay(g, v, v->out)->come));
 }
 
 /* A tail has crossed from v of port in into out at `tail`: the channel is free, and v has a new

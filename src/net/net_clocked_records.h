@@ -10,6 +10,7 @@
 
 /* A router has lanes for a word's bits; each has so many ways on, and a bid for each. */
 enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_OPTIONS = 2, CLOCKED_BIDS = 128 };
+enum { CLOCKED_ROW = ROUTER_LINE / 8 }; /* places of a ring in a cache line */
 
 /* For whole packets and for flits apart: `whole` is constant in each. */
 #define CLOCKED_INLINED static inline __attribute__((always_inline))
@@ -126,7 +127,8 @@ struct clocked {
     struct clocked_lane *lane;
     struct clocked_port *port;
     struct clocked_router *router;
-    union clocked_stay *stay; /* (lanes x (ring + 1)) */
+    union clocked_stay *stay; /* see clocked_ring */
+    int32_t stay_row;         /* lanes x CLOCKED_ROW */
     uint64_t *slot;           /* (wheel + 1, words): a bit for each router, then for each node */
     uint64_t *again;          /* routers that are looked at again in this cycle */
     int32_t wheel;            /* slots - 1: a power of two */
@@ -151,12 +153,13 @@ struct clocked {
     struct clocked_head asking[4];     /* by state behind a step */
     /* Of a router's lanes: their ports, channels, the channels after these. */
     uint8_t entry[CLOCKED_WORD], channel[CLOCKED_WORD], after[CLOCKED_WORD];
-    int nrouter, nnode, nport, shift;
+    int nrouter, nnode, nport;
     struct net *net;
     const struct clocked_list *list;
     struct clocked_result *result;
     int64_t bytes;               /* of the message before, its flits and gap */
-    int32_t flits, gap, longest; /* flits of the longest packet */
+    int32_t flits, gap;
+    int32_t longest, shortest; /* flits of a packet */
     int done;                    /* messages that have left the network */
     sim_ps unit;
     struct clocked_match *match; /* (lanes) scratch of one allocation */

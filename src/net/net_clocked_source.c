@@ -43,7 +43,7 @@ static void source_flits(struct clocked *g, int node, int32_t now)
         if (at == CLOCKED_NEVER) return; /* a credit will wake us */
         const bool head = l->sent == 0;
         if (head) l->first = l->worm->begun = at;
-        if (!g->whole) stay[v->in & g->ring].come = at + g->reach;
+        if (!g->whole) stay[clocked_place(g, v->in)].come = at + g->reach;
         v->in += unit;
         p->held += unit;
         l->sent += unit;
@@ -72,7 +72,7 @@ static void source_whole(struct clocked *g, struct clocked_source *z, struct clo
     p->held += flits;
     if (!g->whole) {
         union clocked_stay *stay = clocked_ring(g, v);
-        for (int32_t k = 0; k < flits; k++) stay[k].come = now + g->reach + k;
+        for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, k)].come = now + g->reach + k;
     }
     z->free = clocked_later(now + flits, now + flits - 1 + l->worm->gap);
     clocked_front(g, v, p);

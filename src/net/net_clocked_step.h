@@ -108,7 +108,7 @@ CLOCKED_INLINED int32_t clocked_sends_from(struct clocked *g, const struct clock
     const struct clocked_port *out = v->way;
     int32_t at = clocked_later(clocked_port_of(g, v)->passed, out->free);
     /* A whole packet is there when its head is. */
-    at = clocked_later(at, whole ? v->due : clocked_ring(g, v)[v->out & g->ring].come);
+    at = clocked_later(at, whole ? v->due : clocked_stay(g, v, v->out)->come);
     if (out >= g->sink) return at;
     return clocked_later(at, clocked_room(g, &g->lane[v->front->ahead->lane], out,
                                           whole ? v->front->flits : 1, now, whole));

@@ -19,9 +19,9 @@ static int32_t flits_used(const struct clocked *g, const struct clocked_port *p,
     /* The latest first: those before it are back as soon as one is. */
     int32_t used = 0;
     for (int32_t k = v->out - 1; k >= 0 && k >= v->out - g->ring; k--, used++)
-        if (stay[k & g->ring].go + late <= g->now) break;
+        if (stay[clocked_place(g, k)].go + late <= g->now) break;
     for (int32_t k = v->in - 1; k >= 0 && k >= v->in - g->ring; k--, used--)
-        if (stay[k & g->ring].come < sent) break;
+        if (stay[clocked_place(g, k)].come < sent) break;
     return used;
 }
 
@@ -33,8 +33,8 @@ static int32_t packets_used(const struct clocked *g, const struct clocked_port *
     const union clocked_stay *stay = clocked_ring(g, v);
     const int32_t late = g->credit + p->wire;
     int32_t used = 0, end = v->out;
-    for (int32_t k = v->nleft - 1; k >= 0; end = stay[k-- & g->ring].position) {
-        const union clocked_stay *s = &stay[k & g->ring];
+    for (int32_t k = v->nleft - 1; k >= 0; end = stay[clocked_place(g, k--)].position) {
+        const union clocked_stay *s = &stay[clocked_place(g, k)];
         const int32_t flits = end - s->position, back = g->now - late - s->at + 1;
         if (back >= flits) break;
         used += back > 0 ? flits - back : flits;
