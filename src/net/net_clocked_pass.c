@@ -85,6 +85,8 @@ static int32_t competes(const struct clocked *g, const struct clocked_lane *v,
     } else if (meets) {
         return w->due;
     }
+    /* With nobody behind it there is none that is known here yet. */
+    if (!w->front->behind) return CLOCKED_NEVER;
     return clocked_later(now, w->due) + left + g->setup;
 }
 
