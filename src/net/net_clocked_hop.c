@@ -1,8 +1,8 @@
 /* net_clocked_hop.c - a cycle: looks at routers, of which most come to one short step.
  *
- * Most often one lane of a router is due, its head has one way on, the channel whose turn it is is
- * clear, and nobody stands behind it. All that comes of it is worked out here at once; all else is
- * left to net_clocked_pass.c and net_clocked_allocate.c. */
+ * Most often one lane of a router is due, its head has one way on, and a channel and the switch are
+ * free for all of the packet. What comes of it is worked out here at once; all else is left to
+ * net_clocked_pass.c and net_clocked_allocate.c. */
 #include "net/net_clocked_step.h"
 
 /* ---- a clear way ---- */
@@ -46,23 +46,33 @@ static inline void way_on(struct clocked *g, struct clocked_lane *out, struct cl
     }
 }
 
-/* l comes into lane `out` of p, which is empty and counts anew: it is the front there, and its head
- * asks when it has come. */
-static inline void comes_first(struct clocked *g, struct clocked_lane *out, struct clocked_port *p,
-                               struct clocked_leg *l, int32_t now)
+/* l comes into lane `out` of p, which it enters behind those that are there; a lane that is clear
+ * counts anew. If it is the front there, its head asks when it has come. */
+static inline void comes(struct clocked *g, struct clocked_lane *out, struct clocked_port *p,
+                         struct clocked_leg *l, bool clear, int32_t now)
 {
-    struct clocked_router *o = &g->router[p->to];
-    const int32_t flits = l->flits, due = now + g->due + p->wire;
-    out->in = flits;
-    out->out = out->nleft = 0;
-    out->clear = CLOCKED_NEVER;
-    out->front = out->back = l;
-    out->due = due;
+    const int32_t flits = l->flits;
+    int32_t due = now + g->due + p->wire;
     p->held += flits;
     l->behind = NULL;
     l->sent = flits;
     l->first = now;
     l->lane = clocked_number(g, out);
+    out->clear = CLOCKED_NEVER;
+    if (clear) {
+        out->in = flits;
+        out->out = out->nleft = 0;
+    } else {
+        out->in += flits;
+        if (out->front) {
+            out->back = out->back->behind = l;
+            return;
+        }
+        due = clocked_later(due, out->left + g->due - g->reach);
+    }
+    struct clocked_router *o = &g->router[p->to];
+    out->front = out->back = l;
+    out->due = due;
     o->busy |= UINT64_C(1) << (out - o->lane);
     clocked_wake(g, p->to, due);
     way_on(g, out, p, l);
@@ -82,16 +92,37 @@ static inline bool flits_follow(const struct clocked *g, const struct clocked_ro
            now + flits <= (alone ? now + g->tau : clocked_undisputed(g, v, in, v->way, now));
 }
 
-/* The channel of v's way whose turn it is, if that and the switch are clear; -1: not so. */
-static inline int clear_turn(const struct clocked_lane *v, const struct clocked_port *in,
-                             const struct clocked_port *p, int32_t now)
+/* The channel of v's way whose turn it is. */
+static inline int turn_channel(const struct clocked_lane *v, const struct clocked_port *p)
 {
     const int turn = v->accept - p->lanes_out - v->head.first;
-    const int number = v->head.first + (turn >= 0 && turn < v->head.count ? turn : 0);
-    return in->passed > now || p->free > now || p->lane[number].clear > now ? -1 : number;
+    return v->head.first + (turn >= 0 && turn < v->head.count ? turn : 0);
 }
 
-/* All turns move on, as clocked_quick moves them: lane i of its router sends over `out`. */
+/* Of the channels of v's way, from that whose turn it is on and round, the first one that v gets at
+ * once with room for all of it; -1: there is none. A channel that is clear has all its credits; at
+ * level packet one that is not may have room enough. */
+static __attribute__((noinline)) int open_channel(struct clocked *g, const struct clocked_lane *v,
+                                                  int32_t now)
+{
+    const struct clocked_port *p = v->way;
+    const int first = v->head.first, end = first + v->head.count;
+    int number = turn_channel(v, p);
+    for (int i = first; i < end; i++) {
+        struct clocked_lane *out = &p->lane[number];
+        if (out->clear <= now) return number;
+        if (!out->owned && out->free <= now) {
+            if (!g->whole) return -1;
+            if (p < g->sink && clocked_room(g, out, p, v->front->flits, now, true) <= now)
+                return number;
+        }
+        if (++number == end) number = first;
+    }
+    return -1;
+}
+
+/* All turns move on as the allocators would have moved them: lane i of its router sends over
+ * channel `number` of p. */
 static inline void turns_move(const struct clocked *g, struct clocked_lane *v, int i,
                               struct clocked_port *in, struct clocked_port *p, int number)
 {
@@ -100,9 +131,10 @@ static inline void turns_move(const struct clocked *g, struct clocked_lane *v, i
     clocked_given(v, i, &p->lane[number], p->lanes_out + number);
 }
 
-/* Lane i of router o, the only one that is due, others from cycle `next` on: the same as
- * clocked_quick, where nobody stands behind the head or waits for its place. False: it is not so,
- * and nothing has changed. */
+/* Head i of router o, with one way on, which nobody disputes now; others are due from cycle `next`
+ * on. It gets its channel and the switch in one cycle, and all of it goes; at level flit as much as
+ * can go at once. Nobody ever owns the channel then, and its leg moves from one FIFO to the next
+ * instead of being made anew. False: there is no such channel, and nothing has changed. */
 CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t next,
                          int32_t now, const bool whole)
 {
@@ -110,31 +142,53 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     struct clocked_port *in = &o->port[g->entry[i]], *p = v->way;
     struct clocked_leg *l = v->front;
     const int32_t flits = l->flits, gone = now + flits;
-    const int number = clear_turn(v, in, p, now);
-    if (number < 0 || l->behind || v->starved) return false;
-    if (!whole && !flits_follow(g, o, v, in, flits, now)) return false;
+    if (in->passed > now || p->free > now) return false;
+    int number = turn_channel(v, p);
+    if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
     struct clocked_lane *out = &p->lane[number];
+    const bool clear = out->clear <= now, sink = v->head.noption == 0;
     turns_move(g, v, i, in, p, number);
+    if (!whole && !flits_follow(g, o, v, in, flits, now)) {
+        clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
+        return true;
+    }
+    if (!sink && l->state < 0) clocked_taken(g, v, l, p, number);
     flits_note(g, v, out, p, flits, now, whole);
     v->out += flits;
     v->left = in->passed = p->free = gone;
-    v->front = NULL;
-    v->head.state = LANE_IDLE;
-    v->clear = clocked_later(v->free, gone + g->credit + in->wire);
     in->held -= flits;
-    o->busy &= ~(UINT64_C(1) << i);
+    v->front = l->behind;
+    if (v->starved) clocked_place_freed(g, v, in, now);
+    if (l->behind) {
+        clocked_front_changes(g, v, in);
+    } else {
+        v->head.state = LANE_IDLE;
+        v->clear = clocked_later(v->free, gone + g->credit + in->wire);
+        o->busy &= ~(UINT64_C(1) << i);
+    }
     out->free = gone + g->pause; /* nobody ever owned it */
     /* Others may want the channel. */
     if (next <= out->free) clocked_wake(g, (int)(o - g->router), out->free);
-    if (v->head.noption > 0) {
-        if (l->state < 0) clocked_taken(g, v, l, p, number);
-        comes_first(g, out, p, l, now);
+    if (!sink) {
+        comes(g, out, p, l, clear, now);
         return true;
     }
     out->clear = clocked_later(out->free, g->credit);
     clocked_leg_return(g, l);
     clocked_delivered(g, l->worm, gone - 1);
     return true;
+}
+
+bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
+    const int i = (int)(v - o->lane);
+    int32_t next = CLOCKED_NEVER;
+    for (uint64_t busy = o->busy & ~(UINT64_C(1) << i); busy; busy &= busy - 1) {
+        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
+        if (w->head.state != LANE_SENDING) next = clocked_sooner(next, w->due);
+    }
+    return g->whole ? hop(g, o, i, next, now, true) : hop(g, o, i, next, now, false);
 }
 
 /* ---- looks ---- */
@@ -173,7 +227,7 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
     } else {
         struct clocked_lane *v = g->active[0];
         if (v->head.state == LANE_ASKING && v->head.noption <= 1 &&
-            (hop(g, o, (int)(v - o->lane), next, now, whole) || clocked_quick(g, v, now)))
+            hop(g, o, (int)(v - o->lane), next, now, whole))
             return next;
         again = clocked_pass(g, v, now);
     }

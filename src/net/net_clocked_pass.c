@@ -53,6 +53,11 @@ static inline void front_changes(struct clocked *g, struct clocked_lane *v, stru
     g->router[p->to].busy &= ~clocked_bit(g, p, v);
 }
 
+void clocked_front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p)
+{
+    front_changes(g, v, p);
+}
+
 /* A whole packet from v over port p into out, its head at `now`: its flits follow one in a cycle,
  * so that one entry says when each of them left. */
 static inline void packet_crosses(struct clocked *g, struct clocked_lane *v, struct clocked_port *p,
@@ -162,6 +167,12 @@ CLOCKED_INLINED void place_freed(struct clocked *g, struct clocked_lane *v,
     const int32_t at = whole ? now : now + g->credit + in->wire;
     if (in->from >= 0) clocked_wake(g, in->from, at);
     else clocked_wake_source(g, ~in->from, clocked_later(at, g->source[~in->from].free));
+}
+
+void clocked_place_freed(struct clocked *g, struct clocked_lane *v, const struct clocked_port *in,
+                         int32_t now)
+{
+    place_freed(g, v, in, now, g->whole);
 }
 
 /* Flits of v's front are left: a look when the next one is there and the input is free. */
@@ -318,54 +329,6 @@ void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_p
     if (p->lane[number].clear <= now) clocked_restart(&p->lane[number]);
     if (g->whole) pass_on(g, v, in, p, number, now, most, true);
     else pass_on(g, v, in, p, number, now, most, false);
-}
-
-/* Of the channels that v's only way on offers, the one whose turn it is; -1: none is there, or not
- * clear at once. A channel that is clear has all its credits; at level packet one that is not may
- * have room enough. Those behind the turn come round. */
-CLOCKED_INLINED int clear_channel(struct clocked *g, const struct clocked_lane *v,
-                                  const struct clocked_port *p, int32_t now, const bool whole)
-{
-    const int count = v->head.count, turn = v->accept - p->lanes_out - v->head.first;
-    int k = turn >= 0 && turn < count ? turn : 0;
-    for (int i = 0; i < count; i++) {
-        const int number = v->head.first + k;
-        struct clocked_lane *out = &p->lane[number];
-        if (out->clear <= now) {
-            clocked_restart(out);
-            return number;
-        }
-        if (++k == count) k = 0;
-        if (out->owned || out->free > now) continue;
-        if (!whole) return -1;
-        if (v->head.noption > 0 && clocked_room(g, out, p, v->front->flits, now, true) <= now)
-            return number;
-    }
-    return -1;
-}
-
-/* A head with one way on, of lane number `input` of its router, whose channel and switch are free:
- * all turns move on as the allocators would have moved them. */
-CLOCKED_INLINED bool head_quick(struct clocked *g, struct clocked_lane *v, int input,
-                                struct clocked_port *in, int channel, int32_t now, const bool whole)
-{
-    struct clocked_port *p = v->way;
-    if (in->passed > now || p->free > now) return false;
-    const int number = clear_channel(g, v, p, now, whole);
-    if (number < 0) return false;
-    clocked_crosses(in, p);
-    in->turn = clocked_next_channel(g, channel);
-    clocked_given(v, input, &p->lane[number], p->lanes_out + number);
-    pass_on(g, v, in, p, number, now, INT32_MAX, whole);
-    return true;
-}
-
-__attribute__((noinline)) bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now)
-{
-    struct clocked_port *in = clocked_port_of(g, v);
-    const int input = (int)(v - g->router[in->to].lane), channel = clocked_channel_of(in, v);
-    return g->whole ? head_quick(g, v, input, in, channel, now, true)
-                    : head_quick(g, v, input, in, channel, now, false);
 }
 
 /* A head that asks, with one way on. It gets its channel even if it cannot send yet: then it owns

@@ -45,13 +45,22 @@ void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_p
  * Returns when to look at it again; CLOCKED_NEVER: nothing of it needs that. */
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now);
 
-/* clocked_quick: the same for a head with one way on, if that is clear; else it does nothing and
+/* clocked_quick: the same for a head with one way on, if that is free; else it does nothing and
  * returns false. */
 bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now);
 
 /* clocked_front: the head of the front of v, a lane of p, is there or on its way: see
  * router_front_comes. */
 void clocked_front(struct clocked *g, struct clocked_lane *v, struct clocked_port *p);
+
+/* clocked_front_changes: the front of v, a lane of p, has gone. The one behind it, if its head is
+ * there or under way, is the new one; with no such one there is nothing to look at. */
+void clocked_front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p);
+
+/* clocked_place_freed: flits leave v, a lane of `in`, from now on, and somebody upstream waits for
+ * their places. */
+void clocked_place_freed(struct clocked *g, struct clocked_lane *v, const struct clocked_port *in,
+                         int32_t now);
 
 /* clocked_leg: a packet's leg at the end of lane v, which is its own from now on. */
 struct clocked_leg *clocked_leg(struct clocked *g, struct clocked_lane *v);
