@@ -326,8 +326,7 @@ static int active_find(struct clocked *g, const struct clocked_router *o, int32_
  * whatever the order. */
 static int32_t look_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
-    if (v->head.state == LANE_ASKING && v->head.noption <= 1 && clocked_quick(g, v, now))
-        return CLOCKED_NEVER;
+    if (v->head.state == LANE_ASKING && clocked_quick(g, v, now)) return CLOCKED_NEVER;
     return clocked_pass(g, v, now);
 }
 

@@ -121,6 +121,40 @@ static __attribute__((noinline)) int open_channel(struct clocked *g, const struc
     return -1;
 }
 
+/* The channel for a head with two ways, both over one port: of those that it gets at once that of
+ * the higher priority, where this counts, then by turn. -1: there is none, or a strict rule's head
+ * has only one of its ways open, or, at level flit, a channel lacks a credit. */
+static __attribute__((noinline)) int channel_of_two(struct clocked *g,
+                                                    const struct clocked_lane *v, int32_t now)
+{
+    const struct route_option *o = &g->option[clocked_number(g, v) * CLOCKED_OPTIONS];
+    const struct clocked_port *p = v->way;
+    const int32_t unit = g->whole ? v->front->flits : 1;
+    int best = -1, top = 0;
+    uint8_t nearest = 0;
+    for (int k = 0; k < CLOCKED_OPTIONS; k++) {
+        const int priority = g->priority ? o[k].priority : 0;
+        bool open = false;
+        for (int i = o[k].first; i < o[k].first + o[k].count; i++) {
+            struct clocked_lane *out = &p->lane[i];
+            const uint8_t distance = clocked_after(p->lanes_out + i, v->accept);
+            if (out->clear > now) {
+                if (out->owned || out->free > now) continue;
+                const bool room = clocked_room(g, out, p, unit, now, g->whole) <= now;
+                if (!room && !g->whole) return -1;
+                if (!room) continue;
+            }
+            open = true;
+            if (best >= 0 && (priority < top || (priority == top && distance >= nearest))) continue;
+            best = i;
+            top = priority;
+            nearest = distance;
+        }
+        if (!open && g->strict) return -1;
+    }
+    return best;
+}
+
 /* All turns move on as the allocators would have moved them: lane i of its router sends over
  * channel `number` of p. */
 static inline void turns_move(const struct clocked *g, struct clocked_lane *v, int i,
@@ -131,10 +165,11 @@ static inline void turns_move(const struct clocked *g, struct clocked_lane *v, i
     clocked_given(v, i, &p->lane[number], p->lanes_out + number);
 }
 
-/* Head i of router o, with one way on, which nobody disputes now; others are due from cycle `next`
- * on. It gets its channel and the switch in one cycle, and all of it goes; at level flit as much as
- * can go at once. Nobody ever owns the channel then, and its leg moves from one FIFO to the next
- * instead of being made anew. False: there is no such channel, and nothing has changed. */
+/* Head i of router o, whose ways on are of one port and which nobody disputes now; others are due
+ * from cycle `next` on. It gets its channel and the switch in one cycle, and all of it goes; at
+ * level flit as much as can go at once. Nobody ever owns the channel then, and its leg moves from
+ * one FIFO to the next instead of being made anew. False: there is no such channel, and nothing has
+ * changed. */
 CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t next,
                          int32_t now, const bool whole)
 {
@@ -143,12 +178,17 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     struct clocked_leg *l = v->front;
     const int32_t flits = l->flits, gone = now + flits;
     if (in->passed > now || p->free > now) return false;
-    int number = turn_channel(v, p);
-    if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
+    int number;
+    if (v->head.noption > 1) {
+        if (v->other != p->out || (number = channel_of_two(g, v, now)) < 0) return false;
+    } else {
+        number = turn_channel(v, p);
+        if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
+    }
     struct clocked_lane *out = &p->lane[number];
     const bool clear = out->clear <= now, sink = v->head.noption == 0;
     turns_move(g, v, i, in, p, number);
-    if (!whole && !flits_follow(g, o, v, in, flits, now)) {
+    if (!whole && (!clear || !flits_follow(g, o, v, in, flits, now))) {
         clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
         return true;
     }
@@ -226,7 +266,7 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
         again = clocked_meet(g, o, n, now);
     } else {
         struct clocked_lane *v = g->active[0];
-        if (v->head.state == LANE_ASKING && v->head.noption <= 1 &&
+        if (v->head.state == LANE_ASKING &&
             hop(g, o, (int)(v - o->lane), next, now, whole))
             return next;
         again = clocked_pass(g, v, now);

@@ -425,16 +425,16 @@ static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t 
         clocked_crosses(in, p);
         if (!bars) in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
     }
-    if (from) {
-        clocked_given(v, (int)(v - g->router[in->to].lane), best.channel,
-                      from->lanes_out + best.number);
-        clocked_own(g, v, best.channel);
+    if (!from) return p ? clocked_sooner(again, now + 1) : again;
+    clocked_given(v, (int)(v - g->router[in->to].lane), best.channel,
+                  from->lanes_out + best.number);
+    if (p == from && !bars &&
+        clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now) {
+        clocked_pass_on(g, v, in, p, best.number, now, INT32_MAX);
+        return again;
     }
-    if (p && !bars && from == p &&
-        clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now)
-        clocked_send(g, v, now, INT32_MAX);
-    else if (p) again = clocked_sooner(again, now + 1);
-    return from && clocked_waits(v) ? clocked_sooner(again, now + 1) : again;
+    clocked_own(g, v, best.channel);
+    return clocked_sooner(again, now + 1);
 }
 
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now)

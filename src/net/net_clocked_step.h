@@ -45,8 +45,8 @@ void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_p
  * Returns when to look at it again; CLOCKED_NEVER: nothing of it needs that. */
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now);
 
-/* clocked_quick: the same for a head with one way on, if that is free; else it does nothing and
- * returns false. */
+/* clocked_quick: the same for a head that asks, if all is free for it to go at once; else it does
+ * nothing and returns false. */
 bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now);
 
 /* clocked_front: the head of the front of v, a lane of p, is there or on its way: see
