@@ -69,10 +69,35 @@ static int escape_next(const struct routing *r, struct route *p, const struct ro
 
 /* ---- BookSim's ---- */
 
+/* From one router to another, on a torus. */
+static struct lattice_step step_between(const struct lattice *g, int from, int to)
+{
+    const int d = lattice_dimension(g, from, to, false);
+    const int x = lattice_at(g, from, d), y = lattice_at(g, to, d);
+    const int *link = &g->out[from * g->degree + g->first[d]];
+    return (struct lattice_step){
+        .link = {link[0], link[1]},
+        .crosses = {lattice_crosses(g, x, y, 0), lattice_crosses(g, x, y, 1)},
+        .dim = (uint8_t)d,
+        .way = (int8_t)lattice_way(g, d, x, y)};
+}
+
+static void booksim_keep(struct routing *r, struct arena *a)
+{
+    struct lattice *g = r->state;
+    const int n = g->nrouter;
+    if (!g->wraps) return;
+    struct lattice_step *step = TAKE(a, size_product((size_t)n, (size_t)n), struct lattice_step);
+    for (int i = 0; i < n * n; i++)
+        if (i / n != i % n) step[i] = step_between(g, i / n, i % n);
+    g->step = step;
+}
+
 static bool booksim_create(struct routing *r, struct arena *a, struct err *e)
 {
     struct lattice *g = lattice_create(r, a);
     r->state = g;
+    r->keep = booksim_keep;
     r->max_hops = g->diameter;
     r->escape = g->wraps ? RING_ESCAPE : MESH_ESCAPE;
     r->minimal = true;
@@ -112,22 +137,22 @@ static int booksim_torus_next(const struct routing *r, struct route *p,
     const bool escaped = p->channel >= 0 && p->channel < RING_ESCAPE;
     (void)view;
     if (p->router == p->target) return 0;
-    const int d = lattice_dimension(g, p->router, p->target, false);
-    const int x = lattice_at(g, p->router, d), y = lattice_at(g, p->target, d);
-    const int shorter = lattice_way(g, d, x, y);
+    const struct lattice_step s = g->step ? g->step[p->router * g->nrouter + p->target]
+                                          : step_between(g, p->router, p->target);
+    const int d = s.dim;
     const bool straight = escaped && p->last / 2 == d;
-    int way = shorter, part = p->part;
+    int way = s.way, part = p->part;
     if (straight) way = p->last % 2;
     else if (way < 0) way = !routing_draw(p, 2);
-    if (!straight) part = lattice_crosses(g, x, y, way);
-    option[0] = (struct route_option){.link = lattice_link(g, p, d, y, way),
+    if (!straight) part = s.crosses[way];
+    option[0] = (struct route_option){.link = s.link[way],
                                       .first = part,
                                       .count = 1,
                                       .part = part,
                                       .last = 2 * d + way};
     if (escaped) return 1;
-    const int down = shorter != 0;
-    option[1] = (struct route_option){.link = lattice_link(g, p, d, y, down),
+    const int down = s.way != 0;
+    option[1] = (struct route_option){.link = s.link[down],
                                       .first = 3,
                                       .count = 1,
                                       .priority = 1,

@@ -22,6 +22,16 @@ struct lattice {
      * of `out` of the link on to another router; NULL: not kept */
     uint8_t *slot[2];
     uint8_t *far; /* (nrouter x nrouter) dimensions in which two routers differ; NULL: not kept */
+    struct lattice_step *step; /* (nrouter x nrouter) NULL: not kept */
+};
+
+/* The lowest dimension in which two routers differ, on a mesh or torus: the links up and down that
+ * leave the first one, whether each passes the edge of the ring, and the shorter way: 0, 1, -1. */
+struct lattice_step {
+    int link[2];
+    bool crosses[2];
+    uint8_t dim;
+    int8_t way;
 };
 
 /* lattice_create: of r->topology, memory from a. */
