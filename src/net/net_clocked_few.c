@@ -35,15 +35,23 @@ struct bids {
     struct bid bid[FEW];
 };
 
-/* Of two FIFOs of an input that bid for one output one does: that which has its channel before that
- * which hopes for it, then by turn. The other one will have to come back. */
+/* Whether b is before x, of the same input and output: that which has its channel before that which
+ * hopes for it, then by turn. */
+static inline bool bid_before(const struct clocked *g, const struct bid *b, const struct bid *x)
+{
+    const int turn = b->in->turn;
+    int mine = g->channel[b->input] - turn, its = g->channel[x->input] - turn;
+    if (mine < 0) mine += (int)g->nchannel;
+    if (its < 0) its += (int)g->nchannel;
+    return b->head != x->head ? !b->head : mine < its;
+}
+
+/* Of two FIFOs of an input that bid for one output one does. The other one will have to come back.
+ */
 static void bids_merge(struct clocked *g, struct bids *s, int i, const struct bid *b)
 {
     struct bid *x = &s->bid[i], loser = *b;
-    const int n = (int)g->nchannel, turn = b->in->turn,
-              mine = (g->channel[b->input] + n - turn) % n,
-              its = (g->channel[x->input] + n - turn) % n;
-    if (b->head != x->head ? !b->head : mine < its) {
+    if (bid_before(g, b, x)) {
         loser = *x;
         *x = *b;
     }
@@ -152,23 +160,66 @@ static bool bid_ends(struct clocked *g, const struct bid *b, bool won, bool met,
     return false;
 }
 
+/* All bids. Returns when to look again. */
+static int32_t bids_end(struct clocked *g, const struct bid *bid, int n, int32_t now)
+{
+    struct bids s;
+    int32_t again = CLOCKED_NEVER;
+    s.n = 0;
+    for (int i = 0; i < n; i++)
+        if (!bids_add(g, &s, &bid[i])) again = now + 1;
+    const unsigned won = bids_win(g, &s);
+    for (int i = 0; i < s.n; i++)
+        if (!bid_ends(g, &s.bid[i], won >> i & 1, s.meet[i] || s.merged[i], now)) again = now + 1;
+    return again;
+}
+
+/* Two bids at most, without sets. One of two that meet wins: the turn that it won by moves on. */
+static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_t now)
+{
+    int32_t again = CLOCKED_NEVER;
+    const struct bid *x = &bid[0], *y = &bid[n - 1];
+    const bool in = x->in == y->in, out = x->out == y->out;
+    if (n < 2 || (!in && !out)) {
+        for (int i = 0; i < n; i++) {
+            clocked_crosses(bid[i].in, bid[i].out);
+            if (!bid_ends(g, &bid[i], true, false, now)) again = now + 1;
+        }
+        return again;
+    }
+    bool second;
+    if (in && out) second = bid_before(g, y, x);
+    else if (in)
+        second = clocked_after(y->out->out, x->in->accept) <
+                 clocked_after(x->out->out, x->in->accept);
+    else
+        second = clocked_after(y->in->in, x->out->grant) <
+                 clocked_after(x->in->in, x->out->grant);
+    const struct bid *winner = second ? y : x, *loser = second ? x : y;
+    clocked_crosses(winner->in, winner->out);
+    if (loser->channel) clocked_own(g, loser->lane, loser->channel);
+    bid_ends(g, winner, true, true, now);
+    return now + 1;
+}
+
 int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t now)
 {
-    struct bids s = {0};
+    struct bid bid[FEW];
     int32_t again = CLOCKED_NEVER;
+    int nbid = 0;
     if (n > FEW) return -1;
     clocked_try(g, o);
     for (int k = 0; k < n; k++) {
         struct clocked_lane *v = g->active[k];
         const int i = (int)(v - o->lane);
-        struct bid b = {.lane = v, .in = &o->port[g->entry[i]], .out = v->way, .input = (uint8_t)i};
+        struct bid *b = &bid[nbid];
+        *b = (struct bid){
+            .lane = v, .in = &o->port[g->entry[i]], .out = v->way, .input = (uint8_t)i};
         if (v->head.state == LANE_SENDING) o->lanes_tried |= UINT64_C(1) << i;
-        else if (!bid_of_head(g, o, v, now, &b, &again)) continue;
-        if (!bids_add(g, &s, &b)) again = now + 1;
+        else if (!bid_of_head(g, o, v, now, b, &again)) continue;
+        nbid++;
     }
     /* Only now does anything cross: what bids see is the state at the beginning of the cycle. */
-    const unsigned won = bids_win(g, &s);
-    for (int i = 0; i < s.n; i++)
-        if (!bid_ends(g, &s.bid[i], won >> i & 1, s.meet[i] || s.merged[i], now)) again = now + 1;
-    return again;
+    return clocked_sooner(again, nbid <= 2 ? pair_ends(g, bid, nbid, now)
+                                           : bids_end(g, bid, nbid, now));
 }
