@@ -336,12 +336,28 @@ struct crowd {
     bool mixed;
 };
 
+/* The same of two lanes. */
+static int32_t meet_two(struct clocked *g, struct clocked_router *o, int32_t now)
+{
+    struct clocked_lane *v = g->active[0], *w = g->active[1];
+    const uint64_t out = clocked_ways(v) & clocked_ways(w);
+    if (!out && g->entry[v - o->lane] != g->entry[w - o->lane]) {
+        const int32_t again = look_alone(g, v, now);
+        return clocked_sooner(again, look_alone(g, w, now));
+    }
+    const bool asks = v->head.state != LANE_SENDING, also = w->head.state != LANE_SENDING,
+               mixed = (asks && v->head.noption > 1) || (also && w->head.noption > 1) ||
+                       (asks && also && out);
+    return mixed ? allocate_together(g, 2, now) : clocked_few(g, o, 2, now);
+}
+
 /* A channel that a lone head is given stays its own (single); else all go together. */
 int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t now)
 {
     struct crowd c = {0};
     int32_t again = CLOCKED_NEVER;
     int m = 0;
+    if (n == 2 && g->single) return meet_two(g, o, now);
     for (int k = 0; k < n; k++) {
         const struct clocked_lane *v = g->active[k];
         const uint64_t in = UINT64_C(1) << g->entry[v - o->lane], out = clocked_ways(v);
