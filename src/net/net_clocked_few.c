@@ -174,6 +174,16 @@ static int32_t bids_end(struct clocked *g, const struct bid *bid, int n, int32_t
     return again;
 }
 
+/* Of two bids for one input or output, whether it is y's turn. */
+static inline bool pair_turn(const struct clocked *g, const struct bid *x, const struct bid *y)
+{
+    const struct clocked_port *in = x->in, *out = x->out;
+    if (in == y->in && out == y->out) return bid_before(g, y, x);
+    if (in == y->in)
+        return clocked_after(y->out->out, in->accept) < clocked_after(out->out, in->accept);
+    return clocked_after(y->in->in, out->grant) < clocked_after(in->in, out->grant);
+}
+
 /* Two bids at most, without sets. One of two that meet wins: the turn that it won by moves on. */
 static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_t now)
 {
@@ -187,19 +197,88 @@ static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_
         }
         return again;
     }
-    bool second;
-    if (in && out) second = bid_before(g, y, x);
-    else if (in)
-        second = clocked_after(y->out->out, x->in->accept) <
-                 clocked_after(x->out->out, x->in->accept);
-    else
-        second = clocked_after(y->in->in, x->out->grant) <
-                 clocked_after(x->in->in, x->out->grant);
+    const bool second = pair_turn(g, x, y);
     const struct bid *winner = second ? y : x, *loser = second ? x : y;
     clocked_crosses(winner->in, winner->out);
     if (loser->channel) clocked_own(g, loser->lane, loser->channel);
     bid_ends(g, winner, true, true, now);
     return now + 1;
+}
+
+/* ---- two that send ---- */
+
+/* A FIFO that has its channel and has sent its head. */
+struct sender {
+    struct bid bid;
+    struct clocked_lane *to;
+    int32_t left; /* flits that are still to be sent */
+    int32_t at;   /* when the next one can go, as far as that is its own affair */
+    int32_t sent, first, last; /* flits that went; when */
+};
+
+static bool goes_on(const struct clocked_lane *v)
+{
+    return v->head.state == LANE_SENDING && v->front->ahead->sent > 0;
+}
+
+static struct sender sender_of(const struct clocked *g, struct clocked_router *o,
+                               struct clocked_lane *v, int32_t now)
+{
+    const struct clocked_leg *m = v->front->ahead;
+    const int i = (int)(v - o->lane);
+    return (struct sender){
+        .bid = {.lane = v, .in = &o->port[g->entry[i]], .out = v->way, .input = (uint8_t)i},
+        .to = &g->lane[m->lane],
+        .left = m->flits - m->sent,
+        .at = now};
+}
+
+/* Its next flit crosses at `at`. */
+static void sender_sends(struct clocked *g, struct sender *s, int32_t at)
+{
+    struct clocked_port *in = s->bid.in, *out = s->bid.out;
+    struct clocked_lane *v = s->bid.lane, *to = s->to;
+    clocked_crosses(in, out);
+    in->turn = g->after[s->bid.input];
+    in->passed = out->free = at + 1;
+    clocked_stay(g, v, v->out++)->go = at;
+    to->clear = CLOCKED_NEVER;
+    if (out < g->sink) clocked_stay(g, to, to->in++)->come = at + g->reach + out->wire;
+    if (s->sent++ == 0) s->first = at;
+    s->last = at;
+    s->left--;
+}
+
+/* Two FIFOs that go on and share an input or an output, flit by flit as their turns are, until
+ * somebody else may dispute that or a tail has gone: the records tell the future, as after the
+ * flits of one that is alone. Returns when the next one of them can go. */
+static int32_t duet(struct clocked *g, struct clocked_router *o, int32_t now)
+{
+    struct sender s[2] = {sender_of(g, o, g->active[0], now), sender_of(g, o, g->active[1], now)};
+    const uint64_t both = UINT64_C(1) << s[0].bid.input | UINT64_C(1) << s[1].bid.input;
+    int32_t until = now + ROUTER_AHEAD;
+    o->lanes_tried |= both;
+    for (int i = 0; i < 2; i++)
+        until = clocked_sooner(until, clocked_undisputed(g, s[i].bid.lane, s[i].bid.out,
+                                                         o->busy & ~both, now));
+    for (int32_t at = now; at == now || at < until;) {
+        const int i = s[0].at != s[1].at ? s[1].at < s[0].at
+                                         : pair_turn(g, &s[0].bid, &s[1].bid);
+        sender_sends(g, &s[i], at);
+        for (int k = 0; k < 2; k++) {
+            s[k].at = s[k].left > 0 ? clocked_sends_from(g, s[k].bid.lane, at + 1, false)
+                                    : CLOCKED_NEVER;
+            /* A flit or credit that is not known yet may come. */
+            if (s[k].at == CLOCKED_NEVER)
+                until = clocked_sooner(until, now + clocked_sooner(g->reach, g->credit));
+        }
+        at = clocked_sooner(s[0].at, s[1].at);
+        if (s[i].left == 0) break;
+    }
+    for (int i = 0; i < 2; i++)
+        if (s[i].sent > 0)
+            clocked_sent(g, s[i].bid.lane, s[i].bid.in, s[i].sent, s[i].first, s[i].last);
+    return clocked_sooner(s[0].at, s[1].at);
 }
 
 int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t now)
@@ -209,6 +288,8 @@ int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t 
     int nbid = 0;
     if (n > FEW) return -1;
     clocked_try(g, o);
+    if (n == 2 && !g->whole && goes_on(g->active[0]) && goes_on(g->active[1]))
+        return duet(g, o, now);
     for (int k = 0; k < n; k++) {
         struct clocked_lane *v = g->active[k];
         const int i = (int)(v - o->lane);

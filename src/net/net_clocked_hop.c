@@ -81,15 +81,14 @@ static inline void comes(struct clocked *g, struct clocked_lane *out, struct clo
 /* Whether all flits of v's front can follow each other from now on, and nobody can come between:
  * level flit. */
 static inline bool flits_follow(const struct clocked *g, const struct clocked_router *o,
-                                const struct clocked_lane *v, const struct clocked_port *in,
-                                int32_t flits, int32_t now)
+                                const struct clocked_lane *v, int32_t flits, int32_t now)
 {
     if (v->in - v->out < flits || flits > ROUTER_AHEAD || flits > g->buffer) return false;
     /* They come one after the other: the last one says it of all. */
     if (clocked_stay(g, v, v->out + flits - 1)->come > now + flits - 1) return false;
-    const bool alone = (o->busy & (o->busy - 1)) == 0;
+    const uint64_t others = o->busy & ~(UINT64_C(1) << (v - o->lane));
     return flits == 1 ||
-           now + flits <= (alone ? now + g->tau : clocked_undisputed(g, v, in, v->way, now));
+           now + flits <= (others ? clocked_undisputed(g, v, v->way, others, now) : now + g->tau);
 }
 
 /* The channel of v's way whose turn it is. */
@@ -188,7 +187,7 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     struct clocked_lane *out = &p->lane[number];
     const bool clear = out->clear <= now, sink = v->head.noption == 0;
     turns_move(g, v, i, in, p, number);
-    if (!whole && (!clear || !flits_follow(g, o, v, in, flits, now))) {
+    if (!whole && (!clear || !flits_follow(g, o, v, flits, now))) {
         clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
         return true;
     }

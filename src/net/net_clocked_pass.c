@@ -96,15 +96,13 @@ static int32_t competes(const struct clocked *g, const struct clocked_lane *v,
 }
 
 int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
-                           const struct clocked_port *in, const struct clocked_port *out,
-                           int32_t now)
+                           const struct clocked_port *out, uint64_t others, int32_t now)
 {
-    const struct clocked_router *o = &g->router[in->to];
+    const struct clocked_lane *lane = g->router[clocked_port_of(g, v)->to].lane;
     int32_t until = now + g->tau;
     /* Beyond that, heads may come that are not known here yet. */
-    uint64_t others = o->busy & ~clocked_bit(g, in, v);
     for (; others && until > now; others &= others - 1)
-        until = clocked_sooner(until, competes(g, v, &o->lane[__builtin_ctzll(others)], out, now));
+        until = clocked_sooner(until, competes(g, v, &lane[__builtin_ctzll(others)], out, now));
     return until;
 }
 
@@ -128,7 +126,8 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
     if (most > here) most = here;
     if (most > ROUTER_AHEAD) most = ROUTER_AHEAD;
     if (most == 1) return 1;
-    const int32_t until = clocked_undisputed(g, v, in, p, now);
+    const uint64_t others = g->router[in->to].busy & ~clocked_bit(g, in, v);
+    const int32_t until = clocked_undisputed(g, v, p, others, now);
     /* Mostly all credits are there. */
     const int32_t needed = out->in + most - 2 - g->buffer;
     const bool room =
@@ -208,12 +207,43 @@ static inline void flits_come(struct clocked *g, struct clocked_port *p, struct 
     else if (out->head.state == LANE_SENDING) clocked_wake(g, p->to, now + g->reach + p->wire);
 }
 
-/* The steps are in the order of net_router_pass.c. The last one of a tail gives the records back:
- * its leg in v, and where it leaves the network the one ahead and the packet, too. */
-void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t most)
+/* The tail of v's front, which owned channel `out` of p, crosses at `tail`. Its leg in v goes back,
+ * and where it leaves the network the one ahead and the packet, too. */
+static inline void tail_crosses(struct clocked *g, struct clocked_lane *v, struct clocked_port *in,
+                                struct clocked_lane *out, const struct clocked_port *p,
+                                int32_t tail)
 {
     struct clocked_leg *l = v->front, *m = l->ahead;
     struct clocked_worm *w = m->worm;
+    v->front = l->behind;
+    tail_sent(g, v, in, out, p, tail);
+    clocked_leg_return(g, l);
+    if (p < g->sink) return;
+    clocked_delivered(g, w, tail);
+    clocked_leg_return(g, m);
+}
+
+void clocked_sent(struct clocked *g, struct clocked_lane *v, struct clocked_port *in, int32_t k,
+                  int32_t first, int32_t last)
+{
+    struct clocked_leg *m = v->front->ahead;
+    struct clocked_lane *out = &g->lane[m->lane];
+    struct clocked_port *p = v->way;
+    m->sent += k;
+    in->held -= k;
+    v->left = last + 1;
+    if (p < g->sink) {
+        p->held += k;
+        flits_come(g, p, out, m, false, first);
+    }
+    place_freed(g, v, in, first, false);
+    if (m->sent == m->flits) tail_crosses(g, v, in, out, p, last);
+}
+
+/* The steps are in the order of net_router_pass.c. */
+void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t most)
+{
+    struct clocked_leg *l = v->front, *m = l->ahead;
     struct clocked_lane *out = &g->lane[m->lane];
     struct clocked_port *in = clocked_port_of(g, v), *p = clocked_port_of(g, out);
     const bool head = m->sent == 0, sink = p >= g->sink;
@@ -233,12 +263,7 @@ void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_
         rest_waits(g, v, in);
         return;
     }
-    v->front = l->behind;
-    tail_sent(g, v, in, out, p, tail);
-    clocked_leg_return(g, l);
-    if (!sink) return;
-    clocked_delivered(g, w, tail);
-    clocked_leg_return(g, m);
+    tail_crosses(g, v, in, out, p, tail);
 }
 
 /* ---- a lane that is alone ---- */

@@ -96,10 +96,15 @@ struct clocked_chance {
 struct clocked_chance clocked_find(struct clocked *g, struct clocked_lane *v,
                                    const struct clocked_port *p, int first, int count, int32_t now);
 
-/* clocked_undisputed: until when nobody can dispute v's way, a lane of `in`, over port out. */
+/* clocked_undisputed: until when none of the lanes `others` of its router can dispute v's way over
+ * port out. */
 int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
-                           const struct clocked_port *in, const struct clocked_port *out,
-                           int32_t now);
+                           const struct clocked_port *out, uint64_t others, int32_t now);
+
+/* clocked_sent: what comes of it that k flits of v's front, a lane of `in`, whose head went before,
+ * have crossed over the channel that it owns, or will, from `first` to `last`. */
+void clocked_sent(struct clocked *g, struct clocked_lane *v, struct clocked_port *in, int32_t k,
+                  int32_t first, int32_t last);
 
 /* clocked_delivered: w has left the network, its tail at `tail`. */
 void clocked_delivered(struct clocked *g, struct clocked_worm *w, int32_t tail);
