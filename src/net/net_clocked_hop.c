@@ -164,13 +164,12 @@ static inline void turns_move(const struct clocked *g, struct clocked_lane *v, i
     clocked_given(v, i, &p->lane[number], p->lanes_out + number);
 }
 
-/* Head i of router o, whose ways on are of one port and which nobody disputes now; others are due
- * from cycle `next` on. It gets its channel and the switch in one cycle, and all of it goes; at
- * level flit as much as can go at once. Nobody ever owns the channel then, and its leg moves from
- * one FIFO to the next instead of being made anew. False: there is no such channel, and nothing has
- * changed. */
-CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t next,
-                         int32_t now, const bool whole)
+/* Head i of router o, whose ways on are of one port and which nobody disputes now. It gets its
+ * channel and the switch in one cycle, and all of it goes; at level flit as much as can go at once.
+ * Nobody ever owns the channel then, and its leg moves from one FIFO to the next instead of being
+ * made anew. False: there is no such channel, and nothing has changed. */
+CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t now,
+                         const bool whole)
 {
     struct clocked_lane *v = &o->lane[i];
     struct clocked_port *in = &o->port[g->entry[i]], *p = v->way;
@@ -179,7 +178,8 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     if (in->passed > now || p->free > now) return false;
     int number;
     if (v->head.noption > 1) {
-        if (v->other != p->out || (number = channel_of_two(g, v, now)) < 0) return false;
+        if (g->prompt || v->other != p->out || (number = channel_of_two(g, v, now)) < 0)
+            return false;
     } else {
         number = turn_channel(v, p);
         if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
@@ -205,9 +205,9 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
         v->clear = clocked_later(v->free, gone + g->credit + in->wire);
         o->busy &= ~(UINT64_C(1) << i);
     }
-    out->free = gone + g->pause; /* nobody ever owned it */
-    /* Others may want the channel. */
-    if (next <= out->free) clocked_wake(g, (int)(o - g->router), out->free);
+    /* Nobody ever owned it: who wants it finds when it is free. */
+    out->free = gone + g->pause;
+    if (g->prompt) clocked_channel_freed(g, o, out->free);
     if (!sink) {
         comes(g, out, p, l, clear, now);
         return true;
@@ -222,12 +222,7 @@ bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
     struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
     const int i = (int)(v - o->lane);
-    int32_t next = CLOCKED_NEVER;
-    for (uint64_t busy = o->busy & ~(UINT64_C(1) << i); busy; busy &= busy - 1) {
-        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
-        if (w->head.state != LANE_SENDING) next = clocked_sooner(next, w->due);
-    }
-    return g->whole ? hop(g, o, i, next, now, true) : hop(g, o, i, next, now, false);
+    return g->whole ? hop(g, o, i, now, true) : hop(g, o, i, now, false);
 }
 
 /* ---- looks ---- */
@@ -266,7 +261,7 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
     } else {
         struct clocked_lane *v = g->active[0];
         if (v->head.state == LANE_ASKING &&
-            hop(g, o, (int)(v - o->lane), next, now, whole))
+            hop(g, o, (int)(v - o->lane), now, whole))
             return next;
         again = clocked_pass(g, v, now);
     }

@@ -156,6 +156,11 @@ static bool somebody_asks(const struct clocked_router *o, int32_t at)
     return false;
 }
 
+void clocked_channel_freed(struct clocked *g, struct clocked_router *o, int32_t at)
+{
+    if (somebody_asks(o, at)) clocked_wake(g, (int)(o - g->router), at);
+}
+
 /* A place has become free, and somebody upstream waits for it: a flit until its credit is back, a
  * whole packet from now on, as its first flits need no place yet. */
 CLOCKED_INLINED void place_freed(struct clocked *g, struct clocked_lane *v,
@@ -456,7 +461,7 @@ static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t 
     if (p == from && !bars &&
         clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now) {
         clocked_pass_on(g, v, in, p, best.number, now, INT32_MAX);
-        return again;
+        return clocked_waits(v) ? clocked_sooner(again, now + 1) : again;
     }
     clocked_own(g, v, best.channel);
     return clocked_sooner(again, now + 1);

@@ -139,6 +139,9 @@ struct clocked {
     uint32_t nchannel;
     struct clocked_port *sink; /* first way out */
     bool sources;              /* nodes came to this cycle */
+    /* A place that a packet leaves may be taken in the same cycle: it then counts which router is
+     * looked at first, and so also looks that find nothing. */
+    bool prompt;
     bool whole, single, strict, priority, looks, looks_on;
     int iterations;
     struct clocked_source *source;

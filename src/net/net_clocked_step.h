@@ -57,6 +57,9 @@ void clocked_front(struct clocked *g, struct clocked_lane *v, struct clocked_por
  * there or under way, is the new one; with no such one there is nothing to look at. */
 void clocked_front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p);
 
+/* clocked_channel_freed: a channel out of router o is free from `at` on, and others may want it. */
+void clocked_channel_freed(struct clocked *g, struct clocked_router *o, int32_t at);
+
 /* clocked_place_freed: flits leave v, a lane of `in`, from now on, and somebody upstream waits for
  * their places. */
 void clocked_place_freed(struct clocked *g, struct clocked_lane *v, const struct clocked_port *in,

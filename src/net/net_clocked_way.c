@@ -77,6 +77,16 @@ static void way_is(struct clocked_lane *v, int noption, struct clocked_port *p, 
     v->head = (struct clocked_head){LANE_ASKING, (uint8_t)noption, (uint8_t)first, (uint8_t)count};
 }
 
+/* l goes over option o on its channel `number`. */
+static void take(struct clocked *g, struct clocked_leg *l, const struct route_option *o, int number)
+{
+    struct route *way = &l->worm->route;
+    routing_take(g->routing, way, o, number);
+    if (!g->steps) return;
+    l->state = routing_state(g->routing, way, &l->goal);
+    l->row = l->state * g->nrouter * g->nrouter + l->goal;
+}
+
 /* Rules that look at loads see them as they are now: of a port the flits that it was given, less
  * the credits that are back. */
 void clocked_route(struct clocked *g, struct clocked_lane *v)
@@ -89,6 +99,8 @@ void clocked_route(struct clocked *g, struct clocked_lane *v)
     if (n > 0) {
         way_is(v, n, &g->port[g->port_of[o->link]], o->first, o->count);
         if (n > 1) v->other = g->port[g->port_of[o[1].link]].out;
+        /* To the table the channels of one way are all alike. */
+        else if (g->steps) take(g, v->front, o, o->first);
     } else {
         int first = 0;
         const int count = routing_eject(g->routing, way, &first);
@@ -128,13 +140,9 @@ void clocked_taken(struct clocked *g, const struct clocked_lane *v, struct clock
                    const struct clocked_port *p, int number)
 {
     const struct route_option *o = &g->option[clocked_number(g, v) * CLOCKED_OPTIONS];
-    struct route *way = &l->worm->route;
     while (&g->port[g->port_of[o->link]] != p || number < o->first || number >= o->first + o->count)
         o++;
-    routing_take(g->routing, way, o, number);
-    if (!g->steps) return;
-    l->state = routing_state(g->routing, way, &l->goal);
-    l->row = l->state * g->nrouter * g->nrouter + l->goal;
+    take(g, l, o, number);
 }
 
 /* The leg ahead stands in the FIFO of the channel as soon as that is its own, before a flit is
