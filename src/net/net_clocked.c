@@ -322,8 +322,6 @@ bool net_clocked(struct net *n, const struct clocked_list *q, struct clocked_res
         gap = clocked_later(gap, (int32_t)(n->port[i].gap / g->unit));
     if (!list_is_even(g, gap) || !ports_make(g, from)) return false;
     ports_fill(g, from);
-    /* Packets as long as a credit is under way: their last flits come behind it. */
-    g->prompt = g->whole && g->longest > g->credit;
     if (!lanes_make(g, gap)) return false;
     g->next = TAKE_FULL(n->arena, q->count + 1, int32_t, true);
     routing_keep(n->routing, n->arena);

@@ -326,8 +326,10 @@ static int active_find(struct clocked *g, const struct clocked_router *o, int32_
  * whatever the order. */
 static int32_t look_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
 {
-    if (v->head.state == LANE_ASKING && clocked_quick(g, v, now)) return CLOCKED_NEVER;
-    return clocked_pass(g, v, now);
+    int32_t again = CLOCKED_NEVER;
+    if (v->head.state != LANE_ASKING || !clocked_quick(g, v, now, &again))
+        return clocked_pass(g, v, now);
+    return again;
 }
 
 /* Inputs and outputs of several lanes; heads that have several ways or ask at the same output. */

@@ -122,14 +122,16 @@ static __attribute__((noinline)) int open_channel(struct clocked *g, const struc
 
 /* The channel for a head with two ways, both over one port: of those that it gets at once that of
  * the higher priority, where this counts, then by turn. -1: there is none, or a strict rule's head
- * has only one of its ways open, or, at level flit, a channel lacks a credit. */
-static __attribute__((noinline)) int channel_of_two(struct clocked *g,
-                                                    const struct clocked_lane *v, int32_t now)
+ * has only one of its ways open, or, at level flit, a channel lacks a credit. *again: when the
+ * router is looked at again as if its bids had not been for one port. */
+static __attribute__((noinline)) int channel_of_two(struct clocked *g, const struct clocked_lane *v,
+                                                    int32_t now, int32_t *again)
 {
     const struct route_option *o = &g->option[clocked_number(g, v) * CLOCKED_OPTIONS];
     const struct clocked_port *p = v->way;
     const int32_t unit = g->whole ? v->front->flits : 1;
-    int best = -1, top = 0;
+    int best = -1, top = 0, nopen = 0;
+    int32_t later = CLOCKED_NEVER;
     uint8_t nearest = 0;
     for (int k = 0; k < CLOCKED_OPTIONS; k++) {
         const int priority = g->priority ? o[k].priority : 0;
@@ -138,10 +140,12 @@ static __attribute__((noinline)) int channel_of_two(struct clocked *g,
             struct clocked_lane *out = &p->lane[i];
             const uint8_t distance = clocked_after(p->lanes_out + i, v->accept);
             if (out->clear > now) {
-                if (out->owned || out->free > now) continue;
-                const bool room = clocked_room(g, out, p, unit, now, g->whole) <= now;
-                if (!room && !g->whole) return -1;
-                if (!room) continue;
+                if (out->owned) continue;
+                const int32_t at =
+                    clocked_later(out->free, clocked_room(g, out, p, unit, now, g->whole));
+                if (at > now && !g->whole) return -1;
+                later = at > now ? clocked_sooner(later, at) : later;
+                if (at > now) continue;
             }
             open = true;
             if (best >= 0 && (priority < top || (priority == top && distance >= nearest))) continue;
@@ -150,7 +154,11 @@ static __attribute__((noinline)) int channel_of_two(struct clocked *g,
             nearest = distance;
         }
         if (!open && g->strict) return -1;
+        nopen += open;
     }
+    /* Both ways bid, and one bid is left over. */
+    if (nopen == CLOCKED_OPTIONS && (g->strict || o[0].priority == o[1].priority)) later = now + 1;
+    *again = later;
     return best;
 }
 
@@ -167,9 +175,10 @@ static inline void turns_move(const struct clocked *g, struct clocked_lane *v, i
 /* Head i of router o, whose ways on are of one port and which nobody disputes now. It gets its
  * channel and the switch in one cycle, and all of it goes; at level flit as much as can go at once.
  * Nobody ever owns the channel then, and its leg moves from one FIFO to the next instead of being
- * made anew. False: there is no such channel, and nothing has changed. */
-CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t now,
-                         const bool whole)
+ * made anew. False: there is no such channel, and nothing has changed. asks: when the first of the
+ * other heads does, which may want the channel when that is free. */
+CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int32_t asks,
+                         int32_t now, int32_t *again, const bool whole)
 {
     struct clocked_lane *v = &o->lane[i];
     struct clocked_port *in = &o->port[g->entry[i]], *p = v->way;
@@ -178,8 +187,9 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     if (in->passed > now || p->free > now) return false;
     int number;
     if (v->head.noption > 1) {
-        if (g->prompt || v->other != p->out || (number = channel_of_two(g, v, now)) < 0)
-            return false;
+        if (v->other != p->out || (number = channel_of_two(g, v, now, again)) < 0) return false;
+        clocked_try(g, o);
+        o->lanes_tried |= UINT64_C(1) << i;
     } else {
         number = turn_channel(v, p);
         if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
@@ -205,9 +215,8 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
         v->clear = clocked_later(v->free, gone + g->credit + in->wire);
         o->busy &= ~(UINT64_C(1) << i);
     }
-    /* Nobody ever owned it: who wants it finds when it is free. */
-    out->free = gone + g->pause;
-    if (g->prompt) clocked_channel_freed(g, o, out->free);
+    out->free = gone + g->pause; /* nobody ever owned it */
+    clocked_wake_if(g, o, out->free, asks <= out->free);
     if (!sink) {
         comes(g, out, p, l, clear, now);
         return true;
@@ -218,11 +227,16 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     return true;
 }
 
-bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now)
+bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t *again)
 {
     struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
     const int i = (int)(v - o->lane);
-    return g->whole ? hop(g, o, i, now, true) : hop(g, o, i, now, false);
+    int32_t asks = CLOCKED_NEVER;
+    for (uint64_t busy = o->busy & ~(UINT64_C(1) << i); busy; busy &= busy - 1) {
+        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
+        asks = clocked_sooner(asks, w->head.state == LANE_SENDING ? CLOCKED_NEVER : w->due);
+    }
+    return g->whole ? hop(g, o, i, asks, now, again, true) : hop(g, o, i, asks, now, again, false);
 }
 
 /* ---- looks ---- */
@@ -260,10 +274,11 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
         again = clocked_meet(g, o, n, now);
     } else {
         struct clocked_lane *v = g->active[0];
-        if (v->head.state == LANE_ASKING &&
-            hop(g, o, (int)(v - o->lane), now, whole))
-            return next;
-        again = clocked_pass(g, v, now);
+        again = CLOCKED_NEVER;
+        if (v->head.state != LANE_ASKING ||
+            !hop(g, o, (int)(v - o->lane), next, now, &again, whole))
+            again = clocked_pass(g, v, now);
+        else if (again == CLOCKED_NEVER) return next;
     }
     again = clocked_sooner(again, next);
     if (o->tried == now) o->again = again;
@@ -279,7 +294,7 @@ CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool tried, con
     if (!o->busy) return; /* what was waited for has been served */
     const int32_t again =
         tried || !g->single ? clocked_look_slowly(g, o, now) : look_once(g, o, now, whole);
-    if (again != CLOCKED_NEVER) clocked_wake(g, r, again);
+    clocked_wake_if(g, o, again, again != CLOCKED_NEVER);
 }
 
 /* All nodes that are due, by number; those that wake meanwhile, too. */

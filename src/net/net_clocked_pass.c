@@ -156,11 +156,6 @@ static bool somebody_asks(const struct clocked_router *o, int32_t at)
     return false;
 }
 
-void clocked_channel_freed(struct clocked *g, struct clocked_router *o, int32_t at)
-{
-    if (somebody_asks(o, at)) clocked_wake(g, (int)(o - g->router), at);
-}
-
 /* A place has become free, and somebody upstream waits for it: a flit until its credit is back, a
  * whole packet from now on, as its first flits need no place yet. */
 CLOCKED_INLINED void place_freed(struct clocked *g, struct clocked_lane *v,

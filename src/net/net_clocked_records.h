@@ -139,9 +139,6 @@ struct clocked {
     uint32_t nchannel;
     struct clocked_port *sink; /* first way out */
     bool sources;              /* nodes came to this cycle */
-    /* A place that a packet leaves may be taken in the same cycle: it then counts which router is
-     * looked at first, and so also looks that find nothing. */
-    bool prompt;
     bool whole, single, strict, priority, looks, looks_on;
     int iterations;
     struct clocked_source *source;
@@ -170,7 +167,7 @@ struct clocked {
     struct clocked_ask *ask;
     struct clocked_bid *bid;
     int nask, nbid;
-    struct clocked_lane *active[CLOCKED_WORD];
+    struct clocked_lane *active[CLOCKED_WORD + 1]; /* one more is written before it is counted */
 };
 
 #endif

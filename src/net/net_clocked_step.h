@@ -46,8 +46,8 @@ void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_p
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now);
 
 /* clocked_quick: the same for a head that asks, if all is free for it to go at once; else it does
- * nothing and returns false. */
-bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now);
+ * nothing and returns false. *again: when to look again, if that is needed. */
+bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t *again);
 
 /* clocked_front: the head of the front of v, a lane of p, is there or on its way: see
  * router_front_comes. */
@@ -56,9 +56,6 @@ void clocked_front(struct clocked *g, struct clocked_lane *v, struct clocked_por
 /* clocked_front_changes: the front of v, a lane of p, has gone. The one behind it, if its head is
  * there or under way, is the new one; with no such one there is nothing to look at. */
 void clocked_front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p);
-
-/* clocked_channel_freed: a channel out of router o is free from `at` on, and others may want it. */
-void clocked_channel_freed(struct clocked *g, struct clocked_router *o, int32_t at);
 
 /* clocked_place_freed: flits leave v, a lane of `in`, from now on, and somebody upstream waits for
  * their places. */

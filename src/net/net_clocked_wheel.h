@@ -12,19 +12,24 @@
 static inline int32_t clocked_later(int32_t a, int32_t b) { return a > b ? a : b; }
 static inline int32_t clocked_sooner(int32_t a, int32_t b) { return a < b ? a : b; }
 
-/* clocked_wake: see that router r is looked at, in cycle `at` or earlier; of now: again, after all
- * others. */
-static inline void clocked_wake(struct clocked *g, int r, int32_t at)
+/* clocked_wake_if: see that router o is looked at, in cycle `at` or earlier, if `so`; of now:
+ * again, after all others. */
+static inline void clocked_wake_if(struct clocked *g, struct clocked_router *o, int32_t at, bool so)
 {
-    struct clocked_router *o = &g->router[r];
-    if (o->wake <= at) return;
+    if (!so || o->wake <= at) return;
     o->wake = at;
     if (at == g->now) {
-        g->again[r / CLOCKED_WORD] |= o->bit;
+        g->again[(o - g->router) / CLOCKED_WORD] |= o->bit;
         return;
     }
     o->slot[(size_t)(at & g->wheel) << g->word_shift] |= o->bit;
     if (at > g->last) g->last = at;
+}
+
+/* clocked_wake: the same of router r, always. */
+static inline void clocked_wake(struct clocked *g, int r, int32_t at)
+{
+    clocked_wake_if(g, &g->router[r], at, true);
 }
 
 /* clocked_wake_source: the same of a node's way in; of now: still in this cycle. */
