@@ -195,7 +195,7 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
         if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
     }
     struct clocked_lane *out = &p->lane[number];
-    const bool clear = out->clear <= now, sink = v->head.noption == 0;
+    const bool clear = out->clear <= now, sink = v->head.noption == 0, two = v->head.noption > 1;
     turns_move(g, v, i, in, p, number);
     if (!whole && (!clear || !flits_follow(g, o, v, flits, now))) {
         clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
@@ -210,13 +210,15 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     if (v->starved) clocked_place_freed(g, v, in, now);
     if (l->behind) {
         clocked_front_changes(g, v, in);
+        if (two && clocked_waits(v)) *again = now + 1;
     } else {
         v->head.state = LANE_IDLE;
         v->clear = clocked_later(v->free, gone + g->credit + in->wire);
         o->busy &= ~(UINT64_C(1) << i);
     }
     out->free = gone + g->pause; /* nobody ever owned it */
-    clocked_wake_if(g, o, out->free, asks <= out->free);
+    /* Flits take no place in the cycle in which it is left. */
+    if (whole) clocked_wake_if(g, o, out->free, asks <= out->free);
     if (!sink) {
         comes(g, out, p, l, clear, now);
         return true;
