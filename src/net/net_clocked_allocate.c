@@ -347,6 +347,7 @@ static int32_t meet_two(struct clocked *g, struct clocked_router *o, int32_t now
         const int32_t again = look_alone(g, v, now);
         return clocked_sooner(again, look_alone(g, w, now));
     }
+    /* Heads with several ways, or that want channels of one port, need all rounds. */
     const bool asks = v->head.state != LANE_SENDING, also = w->head.state != LANE_SENDING,
                mixed = (asks && v->head.noption > 1) || (also && w->head.noption > 1) ||
                        (asks && also && out);

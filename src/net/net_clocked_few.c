@@ -198,6 +198,7 @@ static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_
         return again;
     }
     const bool second = pair_turn(g, x, y);
+    /* Offers and acceptances come to this: the loser's port is given away in the first round. */
     const struct bid *winner = second ? y : x, *loser = second ? x : y;
     clocked_crosses(winner->in, winner->out);
     if (loser->channel) clocked_own(g, loser->lane, loser->channel);

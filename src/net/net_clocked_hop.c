@@ -1,8 +1,8 @@
-/* net_clocked_hop.c - a cycle: looks at routers, of which most come to one short step.
+/* net_clocked_hop.c - the short step of a head that is alone: its whole packet goes at once.
  *
- * Most often one lane of a router is due, its head has one way on, and a channel and the switch are
- * free for all of the packet. What comes of it is worked out here at once; all else is left to
- * net_clocked_pass.c and net_clocked_allocate.c. */
+ * Most often one lane of a router is due, its head has one way on, or two over one port, and a
+ * channel and the switch are free for all of the packet. What comes of it is worked out here at
+ * once; all else is left to net_clocked_pass.c and net_clocked_allocate.c. */
 #include "net/net_clocked_step.h"
 
 /* ---- a clear way ---- */
@@ -188,6 +188,7 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     int number;
     if (v->head.noption > 1) {
         if (v->other != p->out || (number = channel_of_two(g, v, now, again)) < 0) return false;
+        /* It bid for both ways: a second look in this cycle leaves it out. */
         clocked_try(g, o);
         o->lanes_tried |= UINT64_C(1) << i;
     } else {
@@ -197,6 +198,8 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     struct clocked_lane *out = &p->lane[number];
     const bool clear = out->clear <= now, sink = v->head.noption == 0, two = v->head.noption > 1;
     turns_move(g, v, i, in, p, number);
+    /* Flits that somebody may come between, or whose credits are not all back, go as far as that is
+     * known. */
     if (!whole && (!clear || !flits_follow(g, o, v, flits, now))) {
         clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
         return true;
@@ -208,6 +211,8 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     in->held -= flits;
     v->front = l->behind;
     if (v->starved) clocked_place_freed(g, v, in, now);
+    /* Who stands behind it is the front now, and v is not clear; else v has nothing any more, and
+     * nobody upstream has a channel into it. */
     if (l->behind) {
         clocked_front_changes(g, v, in);
         if (two && clocked_waits(v)) *again = now + 1;
@@ -229,6 +234,12 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     return true;
 }
 
+bool clocked_hop(struct clocked *g, struct clocked_router *o, int i, int32_t asks, int32_t now,
+                 int32_t *again)
+{
+    return g->whole ? hop(g, o, i, asks, now, again, true) : hop(g, o, i, asks, now, again, false);
+}
+
 bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t *again)
 {
     struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
@@ -238,105 +249,5 @@ bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32
         const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
         asks = clocked_sooner(asks, w->head.state == LANE_SENDING ? CLOCKED_NEVER : w->due);
     }
-    return g->whole ? hop(g, o, i, asks, now, again, true) : hop(g, o, i, asks, now, again, false);
-}
-
-/* ---- looks ---- */
-
-/* The lanes of router o that can do something now into g->active, and how many; *next: when the
- * first of the others can. A head whose way is asked for only where it stands asks here. */
-CLOCKED_INLINED int due_find(struct clocked *g, struct clocked_router *o, int32_t now,
-                             int32_t *next, const bool whole)
-{
-    int n = 0;
-    for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
-        struct clocked_lane *v = &o->lane[__builtin_ctzll(busy)];
-        int32_t at = v->due;
-        if (v->head.state != LANE_ASKING) {
-            if (v->head.state == LANE_SENDING) at = clocked_sends_from(g, v, now, whole);
-            else if (at <= now) {
-                clocked_route(g, v);
-                at = v->due;
-            }
-        }
-        if (at > now) *next = clocked_sooner(*next, at);
-        else g->active[n++] = v;
-    }
-    return n;
-}
-
-/* Router o, of which no lane tried before in this cycle. Returns when to look again. */
-CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, int32_t now,
-                                  const bool whole)
-{
-    int32_t next = CLOCKED_NEVER, again;
-    const int n = due_find(g, o, now, &next, whole);
-    if (n == 0) return next;
-    if (n > 1) {
-        again = clocked_meet(g, o, n, now);
-    } else {
-        struct clocked_lane *v = g->active[0];
-        again = CLOCKED_NEVER;
-        if (v->head.state != LANE_ASKING ||
-            !hop(g, o, (int)(v - o->lane), next, now, &again, whole))
-            again = clocked_pass(g, v, now);
-        else if (again == CLOCKED_NEVER) return next;
-    }
-    again = clocked_sooner(again, next);
-    if (o->tried == now) o->again = again;
-    return again;
-}
-
-/* If router r is due; `tried`: lanes of it tried before in this cycle. */
-CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool tried, const bool whole)
-{
-    struct clocked_router *o = &g->router[r];
-    if (o->wake != now) return; /* an earlier look did it */
-    o->wake = CLOCKED_NEVER;
-    if (!o->busy) return; /* what was waited for has been served */
-    const int32_t again =
-        tried || !g->single ? clocked_look_slowly(g, o, now) : look_once(g, o, now, whole);
-    clocked_wake_if(g, o, again, again != CLOCKED_NEVER);
-}
-
-/* All nodes that are due, by number; those that wake meanwhile, too. */
-static inline void look_sources(struct clocked *g, uint64_t *source, int32_t now)
-{
-    g->sources = false;
-    for (int i; (i = clocked_take(source, g->words - g->router_words)) >= 0;)
-        clocked_source_look(g, i, now);
-}
-
-/* Seldom: kept out of the loop of the cycle. */
-static __attribute__((noinline)) void clocked_look_again(struct clocked *g, int r, int32_t now)
-{
-    look(g, r, now, g->router[r].tried == now, g->whole);
-}
-
-/* The sets of a slot are emptied on the way. A router that wakes a node of this cycle is followed
- * by it at once, and one that is woken in it comes after all others. */
-CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole)
-{
-    const int32_t now = g->now;
-    uint64_t *source = router + g->router_words;
-    look_sources(g, source, now);
-    for (int w = 0; w < g->router_words; w++) {
-        uint64_t word = router[w];
-        router[w] = 0;
-        for (; word; word &= word - 1) {
-            look(g, w * CLOCKED_WORD + __builtin_ctzll(word), now, false, whole);
-            if (g->sources) look_sources(g, source, now);
-        }
-    }
-    for (int i; (i = clocked_take(g->again, g->router_words)) >= 0;) {
-        clocked_look_again(g, i, now);
-        if (g->sources) look_sources(g, source, now);
-    }
-}
-
-/* In the order of net_router_gather.c. */
-void clocked_cycle(struct clocked *g, uint64_t *slot)
-{
-    if (g->whole) cycle(g, slot, true);
-    else cycle(g, slot, false);
+    return clocked_hop(g, o, i, asks, now, again);
 }

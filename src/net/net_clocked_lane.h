@@ -137,13 +137,6 @@ static inline void clocked_enter(struct clocked_lane *v, struct clocked_leg *l)
     v->back = l;
 }
 
-/* clocked_waits: whether the front of v still has to send its head. */
-static inline bool clocked_waits(const struct clocked_lane *v)
-{
-    return v->head.state == LANE_ASKING ||
-           (v->head.state == LANE_SENDING && v->front->ahead->sent == 0);
-}
-
 /* clocked_after: the place of number n after `turn`, round. Numbers are below 128, so that those
  * that wrap come after all others in eight bits, too. */
 static inline uint8_t clocked_after(int n, int turn) { return (uint8_t)(n - turn); }

@@ -128,12 +128,11 @@ struct clocked {
     struct clocked_port *port;
     struct clocked_router *router;
     union clocked_stay *stay; /* see clocked_ring */
-    int32_t stay_row;         /* lanes x CLOCKED_ROW */
     uint64_t *slot;           /* (wheel + 1, words): a bit for each router, then for each node */
     uint64_t *again;          /* routers that are looked at again in this cycle */
     int32_t wheel;            /* slots - 1: a power of two */
     int32_t now, last;        /* the last cycle that has a bit */
-    int32_t words, router_words, word_shift;
+    int32_t words, router_words, word_shift, stay_row;
     int32_t tau, credit, reach, setup, pause, buffer, ring, longest_wire;
     int32_t due; /* from when a head crosses a port, without a cable, until it asks, or looks */
     uint32_t nchannel;
@@ -153,20 +152,18 @@ struct clocked {
     struct clocked_head asking[4];     /* by state behind a step */
     /* Of a router's lanes: their ports, channels, the channels after these. */
     uint8_t entry[CLOCKED_WORD], channel[CLOCKED_WORD], after[CLOCKED_WORD];
-    int nrouter, nnode, nport;
+    int nrouter, nnode, nport, nask, nbid;
     struct net *net;
     const struct clocked_list *list;
     struct clocked_result *result;
     int64_t bytes;               /* of the message before, its flits and gap */
-    int32_t flits, gap;
-    int32_t longest, shortest; /* flits of a packet */
+    int32_t flits, gap, longest, shortest; /* flits of packets */
     int done;                    /* messages that have left the network */
     sim_ps unit;
     struct clocked_match *match; /* (lanes) scratch of one allocation */
     struct clocked_side *side;   /* (ports) */
     struct clocked_ask *ask;
     struct clocked_bid *bid;
-    int nask, nbid;
     struct clocked_lane *active[CLOCKED_WORD + 1]; /* one more is written before it is counted */
 };
 

@@ -45,6 +45,12 @@ void clocked_pass_on(struct clocked *g, struct clocked_lane *v, struct clocked_p
  * Returns when to look at it again; CLOCKED_NEVER: nothing of it needs that. */
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now);
 
+/* clocked_hop: head i of router o, which nobody disputes now, goes at once if a channel and the
+ * switch are free for that; else nothing has changed: false. asks: when the first of the other
+ * heads does; *again: when to look again, if that is needed. */
+bool clocked_hop(struct clocked *g, struct clocked_router *o, int i, int32_t asks, int32_t now,
+                 int32_t *again);
+
 /* clocked_quick: the same for a head that asks, if all is free for it to go at once; else it does
  * nothing and returns false. *again: when to look again, if that is needed. */
 bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t *again);
@@ -108,6 +114,13 @@ void clocked_sent(struct clocked *g, struct clocked_lane *v, struct clocked_port
 
 /* clocked_delivered: w has left the network, its tail at `tail`. */
 void clocked_delivered(struct clocked *g, struct clocked_worm *w, int32_t tail);
+
+/* clocked_waits: whether the front of v still has to send its head. */
+static inline bool clocked_waits(const struct clocked_lane *v)
+{
+    return v->head.state == LANE_ASKING ||
+           (v->head.state == LANE_SENDING && v->front->ahead->sent == 0);
+}
 
 /* clocked_used: flits that `link` was given and whose credits are not back (router_used); `of` is
  * a struct clocked. */
