@@ -58,23 +58,27 @@ stays_in_one_process() {
 @test "what needs the order of time stays in one process, with Open MPI" { stays_in_one_process openmpi; }
 @test "what needs the order of time stays in one process, with MPICH" { stays_in_one_process mpich; }
 
-# Inverse dynamics of a chain: each process makes its part of the scene, and checks its own answers. What is more
+# Dynamics of a chain: each process makes its part of the scene, and checks its own answers. What is more
 # than 256 ranks is stored as sums.
 divides() {
     needs "$1"
     local chain=(--set level=loggp --set kernel=inverse --set machine.topology.dims='[8, 8, 8]' --quiet)
+    local forward=("${chain[@]}" --set kernel=forward,dynamics --set kernel.formulation=paper,direct --set n=600 --set ranks=300
+        --set machine.software.eager.limit=unlimited)
     local late=(--set machine.node.flop_rate='1 flop/s' --set n=20000 --set ranks=2)
     scenario
     works mimdsim run t.yaml "${chain[@]}" --set n=5,300 --set model.rate='0 rad/s,1 rad/s' -o one.db
+    works mimdsim run t.yaml "${forward[@]}" -o one.db
     fails_with 1 mimdsim run t.yaml "${chain[@]}" "${late[@]}" --set machine.software.eager.limit=unlimited -o one.db
     for n in 2 3; do
         rm -f all.db
         works start "$1" $n "$MIMDSIM" run t.yaml "${chain[@]}" --set n=5,300 --set model.rate='0 rad/s,1 rad/s' --spread mpi -o all.db
+        works start "$1" $n "$MIMDSIM" run t.yaml "${forward[@]}" --spread mpi -o all.db
         fails_with 1 start "$1" $n "$MIMDSIM" run t.yaml "${chain[@]}" "${late[@]}" --set machine.software.eager.limit=unlimited \
             --spread mpi -o all.db
         diff <(rows one.db) <(rows all.db)
     done
-    sql_is all.db "SELECT group_concat(status, ' ') FROM (SELECT status FROM run ORDER BY status)" 'failed ok ok ok ok'
+    sql_is all.db "SELECT group_concat(status, ' ') FROM (SELECT status FROM run ORDER BY status)" 'failed ok ok ok ok ok ok ok ok'
     sql_is all.db "SELECT text LIKE 'simulated time ends%' FROM run WHERE status = 'failed'" 1
 }
 
