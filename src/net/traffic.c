@@ -31,6 +31,7 @@ struct replay {
     int ninitial, next_initial;
     bool ahead;   /* arrivals are told before their time (net_gather) */
     bool gathers; /* messages of one instant start in one event */
+    bool late;    /* an arrival after q->stop was told before its time */
     struct traffic_result *result;
 };
 
@@ -87,8 +88,11 @@ static void message_arrived(void *context, struct net_message *msg)
     w->next = r->free;
     r->free = w;
     /* Told ahead of time what is not simulated. */
-    if (r->ahead && ((r->q->stop > 0 && msg->arrival > r->q->stop) || msg->arrival > PS_LAST))
+    if (r->ahead && r->q->stop > 0 && msg->arrival > r->q->stop) {
+        r->late = true;
         return;
+    }
+    if (r->ahead && msg->arrival > PS_LAST) return;
     out->arrived++;
     if (msg->arrival > out->makespan) out->makespan = msg->arrival;
     if (out->arrival) out->arrival[m] = msg->arrival;
@@ -241,9 +245,9 @@ static void replay_run(struct replay *r, struct arena *a)
     out->events = sim_events(r->sim);
     out->digest = sim_digest(r->sim);
     out->link = net_links(r->net, 0, a, &out->nlink);
-    /* No event left and messages missing: the net names its cycle, or the list itself is
-     * circular. */
-    out->deadlock = !stopped && out->arrived < r->q->nmessage;
+    /* No event left and messages missing, but for those that only the end of the list cuts off: the
+     * net names its cycle, or the list itself is circular. */
+    out->deadlock = !stopped && !r->late && out->arrived < r->q->nmessage;
     if (out->deadlock && !net_deadlock(r->net, out->text, (int)sizeof out->text))
         strcpy(out->text, "messages wait for each other");
 }
