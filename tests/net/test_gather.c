@@ -398,6 +398,67 @@ static void lists_in_cycles_agree(void **state)
     assert_true(clocked > played / 2);
 }
 
+/* The networks on which levels are compared with BookSim (bench/bench_net.c), at its loads and
+ * beyond: rules with two ways over one port, ways by load, cables of many cycles. */
+static const struct {
+    struct topology_spec topology;
+    enum routing_rule rule;
+    const char *pattern;
+    double load;
+    int vcs, buffer;
+} compared[] = {
+    {{.family = TOPOLOGY_MESH, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
+     ROUTING_ADAPTIVE_XY_YX, "transpose", 0.3, 4, 16},
+    {{.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
+     ROUTING_BOOKSIM_MIN_ADAPT, "tornado(8,2)", 0.3, 4, 16},
+    {{.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 4},
+     ROUTING_BOOKSIM_UGAL, "uniform", 0.3, 4, 16},
+    {{.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1},
+     ROUTING_NCA, "uniform", 0.3, 4, 16},
+    {{.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, .nodes_per_router = 1,
+      .dim_latency = {9e-9, 99e-9}},
+     ROUTING_BOOKSIM_UGAL, "uniform", 0.3, 3, 256},
+};
+
+/* Packets of `flits` flits on network i of those, with credits that take `credit` cycles. */
+static void list_on_compared_agrees(int i, int flits, int credit, enum network_level level)
+{
+    enum { CYCLES = 150, STAGES = 4 };
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    struct topology_spec s = compared[i].topology;
+    s.processors_per_node = 1;
+    s.tie = TIE_RANDOM;
+    struct machine_spec m = netcheck_machine(&s, compared[i].vcs, compared[i].buffer, 0, STAGES);
+    m.network.routing = compared[i].rule;
+    m.network.vc_allocator = ALLOCATOR_ISLIP;
+    m.network.credit_latency = credit * 1e-9;
+    m.network.level = level;
+    const struct topology *t = topology_create(&m.topology, a, &e);
+    struct traffic q;
+    struct traffic_result x;
+    int clocked = 0;
+    assert_true(t && netcheck_load(compared[i].pattern, t, flits, compared[i].load, CYCLES, 1, a,
+                                   &q, &e));
+    assert_true(play(&m, &q, true, a, &x, &e));
+    play_in_cycles(&m, &q, a, &x, i, &clocked);
+    assert_int_equal(clocked, 1);
+    arena_destroy(a);
+}
+
+static void lists_on_compared_networks_agree(void **state)
+{
+    (void)state;
+    static const int flits[] = {1, 4, 6};
+    for (int i = 0; i < (int)(sizeof compared / sizeof *compared); i++)
+        for (int k = 0; k < 3; k++)
+            for (int credit = 1; credit <= 2; credit++) {
+                list_on_compared_agrees(i, flits[k], credit, LEVEL_PACKET);
+                list_on_compared_agrees(i, flits[k], credit, LEVEL_FLIT);
+            }
+}
+
 /* One message after the other over a mesh: `n` of them, every `gap` from `first` on. Returns
  * whether they were played in cycles; the times are those of events in any case. */
 static bool far_list_agrees(const struct machine_spec *m, int n, sim_ps first, sim_ps gap,
@@ -451,6 +512,11 @@ static void late_cycles_are_played_by_events(void **state)
         assert_false(far_list_agrees(&m, 40, (4 * last - 20) * cycle, 7 * cycle, 0));
         assert_false(far_list_agrees(&m, 40, 4 * last * cycle, 7 * cycle, 0));
         assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, (last + 9) * cycle));
+        /* Whom the stop cuts off is not stuck, although his arrival was told before. */
+        struct machine_spec uneven = m;
+        uneven.network.hop_latency = 5.5e-9;
+        for (sim_ps stop = cycle; stop < 40 * cycle; stop += cycle)
+            assert_false(far_list_agrees(&uneven, 1, 0, cycle, stop));
     }
 }
 
@@ -464,6 +530,7 @@ int main(void)
         cmocka_unit_test(gathered_and_single_events_give_the_same),
         cmocka_unit_test(looks_have_one_order_when_credits_are_back_at_once),
         cmocka_unit_test(lists_in_cycles_agree),
+        cmocka_unit_test(lists_on_compared_networks_agree),
         cmocka_unit_test(late_cycles_are_played_by_events),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
