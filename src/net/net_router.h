@@ -12,7 +12,6 @@
 #include "net/net_way.h"
 
 enum { ROUTER_AHEAD = 16 }; /* most flits that a router sends ahead of time */
-
 enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
 
 /* A packet in the network. What a step at a router asks of it lies in its first line. */
