@@ -49,11 +49,14 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
     return again;
 }
 
-/* If router r is due; `tried`: lanes of it tried before in this cycle. */
-CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool tried, const bool whole)
+/* If router r is due; `tried`: lanes of it tried before in this cycle. Who is asked for in this
+ * very cycle comes after all others, whatever bits of it are still there (`second`). */
+CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool second, bool tried,
+                          const bool whole)
 {
     struct clocked_router *o = &g->router[r];
     if (o->wake != now) return; /* an earlier look did it */
+    if (!second && (g->again[r / CLOCKED_WORD] & o->bit)) return;
     o->wake = CLOCKED_NEVER;
     if (!o->busy) return; /* what was waited for has been served */
     const int32_t again =
@@ -72,7 +75,7 @@ static inline void look_sources(struct clocked *g, uint64_t *source, int32_t now
 /* Seldom: kept out of the loop of the cycle. */
 static __attribute__((noinline)) void clocked_look_again(struct clocked *g, int r, int32_t now)
 {
-    look(g, r, now, g->router[r].tried == now, g->whole);
+    look(g, r, now, true, g->router[r].tried == now, g->whole);
 }
 
 /* The sets of a slot are emptied on the way. A router that wakes a node of this cycle is followed
@@ -86,7 +89,7 @@ CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole
         uint64_t word = router[w];
         router[w] = 0;
         for (; word; word &= word - 1) {
-            look(g, w * CLOCKED_WORD + __builtin_ctzll(word), now, false, whole);
+            look(g, w * CLOCKED_WORD + __builtin_ctzll(word), now, false, false, whole);
             if (g->sources) look_sources(g, source, now);
         }
     }

@@ -13,14 +13,20 @@ void router_post(struct routers *g, int r, sim_ps at)
 {
     struct router *o = &g->router[r];
     const struct net *n = g->fabric.net;
+    const uint64_t number = (uint64_t)n->nresource + (uint64_t)r;
     sim_ps *place = NULL;
+    if (at == sim_now(n->sim)) {
+        const uint64_t again = (uint64_t)n->topology->nrouter + (uint64_t)r;
+        o->second = true;
+        sim_at(n->sim, at, ROUTER_LANE_AGAIN, number, g->look, g, again);
+        return;
+    }
     for (int i = 0; i < ROUTER_POSTED; i++) {
         if (o->posted[i] == at + 1) return;
         if (o->posted[i] == 0) place = &o->posted[i];
     }
     if (place) *place = at + 1;
-    const unsigned lane = at == sim_now(n->sim) ? ROUTER_LANE_AGAIN : NET_LANE_ARBITRATE;
-    sim_at(n->sim, at, lane, (uint64_t)n->nresource + (uint64_t)r, g->look, g, (uint64_t)r);
+    sim_at(n->sim, at, NET_LANE_ARBITRATE, number, g->look, g, (uint64_t)r);
 }
 
 /* ---- ways on ---- */

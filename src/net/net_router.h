@@ -110,6 +110,7 @@ struct router {
     struct lane *busy;
     sim_ps wake;                  /* 1 + its next event, or 0 */
     sim_ps retry;                 /* until when some lane has to wait after an allocation */
+    bool second;                  /* its next look was asked for in its own instant */
     sim_ps posted[ROUTER_POSTED]; /* 1 + times of events that were posted and are to come, or 0 */
 };
 
@@ -150,9 +151,10 @@ struct routers {
     struct gather *gather;      /* one event for all of an instant; NULL: one for each router */
 };
 
-/* router_look_at: if router r is due: channels to heads, then the switch to flits. router_look: an
- * event of router `argument`. */
-void router_look_at(struct routers *g, int r, sim_ps now);
+/* router_look_at: if router r is due: channels to heads, then the switch to flits. `second`: all
+ * that were due before this instant have had their turn; who is asked for in it has none earlier.
+ * router_look: an event of router `argument`; beyond their number, a second one. */
+void router_look_at(struct routers *g, int r, bool second, sim_ps now);
 void router_look(void *subject, uint64_t argument, sim_ps now);
 
 /* router_post: an event of router r at `at` (routers.post). */
@@ -161,10 +163,8 @@ void router_post(struct routers *g, int r, sim_ps at);
 /* router_used: flits that link was given and whose credits are not back at g->now. */
 int64_t router_used(const void *of, int link);
 
-/* router_source_look: an event of node's way into the network. */
+/* router_source_look: an event of node's way into the network. router_gather: net_gather. */
 void router_source_look(struct routers *g, int node, sim_ps now);
-
-/* router_gather: net_gather. */
 bool router_gather(struct net *n);
 
 #endif

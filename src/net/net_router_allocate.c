@@ -431,11 +431,12 @@ static __attribute__((noinline)) sim_ps look_slowly(struct routers *g, int r, si
     return g->gather && !v->busy ? look_single(g, v, now) : look_several(g, r, now);
 }
 
-void router_look_at(struct routers *g, int r, sim_ps now)
+void router_look_at(struct routers *g, int r, bool second, sim_ps now)
 {
     struct router *o = &g->router[r];
     sim_ps again = SIM_NEVER;
     if (o->wake != now + 1) return; /* an earlier look did it */
+    if (o->second && !second) return;
     o->wake = 0;
     g->now = now;
     if (!o->busy) return;
@@ -447,8 +448,11 @@ void router_look_at(struct routers *g, int r, sim_ps now)
 void router_look(void *subject, uint64_t argument, sim_ps now)
 {
     struct routers *g = subject;
-    struct router *o = &g->router[argument];
-    for (int i = 0; i < ROUTER_POSTED; i++)
+    const uint64_t nrouter = (uint64_t)g->fabric.net->topology->nrouter;
+    const bool second = argument >= nrouter;
+    const int r = (int)(second ? argument - nrouter : argument);
+    struct router *o = &g->router[r];
+    for (int i = 0; i < ROUTER_POSTED && !second; i++)
         if (o->posted[i] == now + 1) o->posted[i] = 0;
-    router_look_at(g, (int)argument, now);
+    router_look_at(g, r, second, now);
 }

@@ -74,7 +74,7 @@ static void look_routers(struct routers *g, struct gather_slot *s, sim_ps now)
                     const struct lane *v = first[__builtin_ctzll(word)].busy;
                     if (v) __builtin_prefetch(&v->of);
                 }
-                router_look_at(g, w * GATHER_WORD + i, now);
+                router_look_at(g, w * GATHER_WORD + i, false, now);
                 if (g->gather->sources) look_sources(g, s, now);
             }
         }
@@ -94,7 +94,7 @@ static void look_all(void *subject, uint64_t argument, sim_ps now)
     look_sources(g, s, now);
     look_routers(g, s, now);
     for (int i; (i = set_take(&q->again)) >= 0;) {
-        router_look_at(g, i, now);
+        router_look_at(g, i, true, now);
         if (q->sources) look_sources(g, s, now);
     }
     s->posted = false;
@@ -132,7 +132,12 @@ static void alone_source(void *subject, uint64_t argument, sim_ps now)
 
 static void alone_router(void *subject, uint64_t argument, sim_ps now)
 {
-    router_look_at(subject, (int)argument, now);
+    router_look_at(subject, (int)argument, false, now);
+}
+
+static void alone_again(void *subject, uint64_t argument, sim_ps now)
+{
+    router_look_at(subject, (int)argument, true, now);
 }
 
 /* Event: the time of something that had no slot has come. If it still has none, it is looked at by
@@ -173,9 +178,10 @@ static void post_gathered(struct routers *g, int r, sim_ps at)
     struct gather_slot *s = slot_of(g, at);
     const uint64_t number = (uint64_t)g->fabric.net->nresource + (uint64_t)r;
     const bool later = at > sim_now(sim);
+    g->router[r].second = !later;
     if (s) gather_set_add(later ? &s->router : &g->gather->again, r);
     else if (later) sim_at(sim, at, LANE_ENTER, number, enter, g, number);
-    else sim_at(sim, at, ROUTER_LANE_AGAIN, number, alone_router, g, (uint64_t)r);
+    else sim_at(sim, at, ROUTER_LANE_AGAIN, number, alone_again, g, (uint64_t)r);
 }
 
 /* Sets of all slots take a bit for each node and router: not for the largest networks. */

@@ -56,6 +56,7 @@ static inline void router_wake(struct routers *g, int r, sim_ps at)
     struct gather *q = g->gather;
     if (o->wake && o->wake <= at + 1) return;
     o->wake = at + 1;
+    o->second = false;
     /* Mostly into a later slot that others have asked for already. */
     const int k = q ? gather_steps(q, at) : -1;
     if (k > 0) {

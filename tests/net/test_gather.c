@@ -14,7 +14,7 @@
 #include "net/traffic.h"
 #include "study/netcheck_case.h"
 
-static int below(struct random *r, int n) { return (int)random_below(r, (uint64_t)n); }
+#include "play.h"
 
 /* A small network of any family that routing rules know. */
 static struct topology_spec draw_network(struct random *r)
@@ -97,17 +97,6 @@ static struct machine_spec draw_machine(struct random *r, const struct topology_
     return m;
 }
 
-/* n messages without dependencies. */
-static struct traffic list_of(int n, struct arena *a)
-{
-    return (struct traffic){.nmessage = n,
-                            .src = TAKE(a, n, int),
-                            .dst = TAKE(a, n, int),
-                            .bytes = TAKE(a, n, int64_t),
-                            .time = TAKE(a, n, sim_ps),
-                            .delay = TAKE(a, n, sim_ps)};
-}
-
 /* A list of messages; times on the cycle, or anywhere; some wait for others. */
 static void draw_list(struct random *r, int nnode, struct arena *a, struct traffic *q)
 {
@@ -132,42 +121,6 @@ static void draw_list(struct random *r, int nnode, struct arena *a, struct traff
         q->dep_first[m + 1] = ndep;
     }
     if (below(r, 4) == 0) q->stop = (sim_ps)span * 500;
-}
-
-/* What a replay tells, with arrays in a. */
-static bool play(const struct machine_spec *m, const struct traffic *q, bool singly,
-                 struct arena *a, struct traffic_result *r, struct err *e)
-{
-    struct traffic list = *q;
-    const struct topology *t = topology_create(&m->topology, a, e);
-    if (!t) return false;
-    list.singly = singly;
-    *r = (struct traffic_result){.arrival = TAKE(a, q->nmessage, sim_ps),
-                                 .injected = TAKE(a, q->nmessage, sim_ps),
-                                 .uncontended = TAKE(a, q->nmessage, sim_ps)};
-    return traffic_run(&list, m, t, a, true, r, e);
-}
-
-/* In cycles, where the list is for that; nobody asks for loads then. */
-static void play_in_cycles(const struct machine_spec *m, const struct traffic *q, struct arena *a,
-                           const struct traffic_result *x, int trial, int *clocked)
-{
-    struct err e;
-    err_clear(&e);
-    const struct topology *t = topology_create(&m->topology, a, &e);
-    struct traffic_result z = {.arrival = TAKE(a, q->nmessage, sim_ps),
-                               .injected = TAKE(a, q->nmessage, sim_ps)};
-    assert_true(t && traffic_run(q, m, t, a, false, &z, &e));
-    *clocked += z.clocked;
-    for (int i = 0; i < q->nmessage; i++)
-        if (x->arrival[i] != z.arrival[i] || x->injected[i] != z.injected[i])
-            fail_msg("trial %d, message %d of %d: %lld to %lld, in cycles %lld to %lld", trial, i,
-                     q->nmessage, (long long)x->injected[i], (long long)x->arrival[i],
-                     (long long)z.injected[i], (long long)z.arrival[i]);
-    assert_int_equal(x->makespan, z.makespan);
-    assert_int_equal(x->arrived, z.arrived);
-    assert_int_equal(x->deadlock, z.deadlock);
-    assert_string_equal(x->text, z.text);
 }
 
 static void same(const struct traffic_result *x, const struct traffic_result *y, int n, int trial)
@@ -398,128 +351,6 @@ static void lists_in_cycles_agree(void **state)
     assert_true(clocked > played / 2);
 }
 
-/* The networks on which levels are compared with BookSim (bench/bench_net.c), at its loads and
- * beyond: rules with two ways over one port, ways by load, cables of many cycles. */
-static const struct {
-    struct topology_spec topology;
-    enum routing_rule rule;
-    const char *pattern;
-    double load;
-    int vcs, buffer;
-} compared[] = {
-    {{.family = TOPOLOGY_MESH, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
-     ROUTING_ADAPTIVE_XY_YX, "transpose", 0.3, 4, 16},
-    {{.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
-     ROUTING_BOOKSIM_MIN_ADAPT, "tornado(8,2)", 0.3, 4, 16},
-    {{.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 4},
-     ROUTING_BOOKSIM_UGAL, "uniform", 0.3, 4, 16},
-    {{.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1},
-     ROUTING_NCA, "uniform", 0.3, 4, 16},
-    {{.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, .nodes_per_router = 1,
-      .dim_latency = {9e-9, 99e-9}},
-     ROUTING_BOOKSIM_UGAL, "uniform", 0.3, 3, 256},
-};
-
-/* Packets of `flits` flits on network i of those, with credits that take `credit` cycles. */
-static void list_on_compared_agrees(int i, int flits, int credit, enum network_level level)
-{
-    enum { CYCLES = 150, STAGES = 4 };
-    struct arena *a = arena_create();
-    struct err e;
-    err_clear(&e);
-    struct topology_spec s = compared[i].topology;
-    s.processors_per_node = 1;
-    s.tie = TIE_RANDOM;
-    struct machine_spec m = netcheck_machine(&s, compared[i].vcs, compared[i].buffer, 0, STAGES);
-    m.network.routing = compared[i].rule;
-    m.network.vc_allocator = ALLOCATOR_ISLIP;
-    m.network.credit_latency = credit * 1e-9;
-    m.network.level = level;
-    const struct topology *t = topology_create(&m.topology, a, &e);
-    struct traffic q;
-    struct traffic_result x;
-    int clocked = 0;
-    assert_true(t && netcheck_load(compared[i].pattern, t, flits, compared[i].load, CYCLES, 1, a,
-                                   &q, &e));
-    assert_true(play(&m, &q, true, a, &x, &e));
-    play_in_cycles(&m, &q, a, &x, i, &clocked);
-    assert_int_equal(clocked, 1);
-    arena_destroy(a);
-}
-
-static void lists_on_compared_networks_agree(void **state)
-{
-    (void)state;
-    static const int flits[] = {1, 4, 6};
-    for (int i = 0; i < (int)(sizeof compared / sizeof *compared); i++)
-        for (int k = 0; k < 3; k++)
-            for (int credit = 1; credit <= 2; credit++) {
-                list_on_compared_agrees(i, flits[k], credit, LEVEL_PACKET);
-                list_on_compared_agrees(i, flits[k], credit, LEVEL_FLIT);
-            }
-}
-
-/* One message after the other over a mesh: `n` of them, every `gap` from `first` on. Returns
- * whether they were played in cycles; the times are those of events in any case. */
-static bool far_list_agrees(const struct machine_spec *m, int n, sim_ps first, sim_ps gap,
-                            sim_ps stop)
-{
-    struct arena *a = arena_create();
-    struct err e;
-    err_clear(&e);
-    struct traffic q = list_of(n, a);
-    q.stop = stop;
-    for (int i = 0; i < n; i++) {
-        q.src[i] = i % 9;
-        q.dst[i] = (i * 5 + 1) % 9;
-        q.bytes[i] = 64;
-        q.time[i] = first + i * gap;
-    }
-    struct traffic_result x;
-    int clocked = 0;
-    assert_true(play(m, &q, true, a, &x, &e));
-    play_in_cycles(m, &q, a, &x, n, &clocked);
-    arena_destroy(a);
-    return clocked > 0;
-}
-
-/* Times of cycles are 32 bits: what may come near their end is played by events, also where it is
- * beyond the end that a list stops, or begins. */
-static void late_cycles_are_played_by_events(void **state)
-{
-    (void)state;
-    const struct topology_spec s = {.family = TOPOLOGY_MESH,
-                                    .ndim = 2,
-                                    .dims = {3, 3},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1};
-    struct machine_spec m = netcheck_machine(&s, 2, 16, 0, 3);
-    m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
-    const sim_ps cycle = 1000, last = (sim_ps)1 << 30;
-    for (int level = 0; level < 2; level++) {
-        m.network.level = level ? LEVEL_FLIT : LEVEL_PACKET;
-        assert_true(far_list_agrees(&m, 40, 0, 7 * cycle, 0));
-        /* Far into the run, but not too far; idle between messages for long. */
-        assert_true(far_list_agrees(&m, 40, (last - 100000) * cycle, 7 * cycle, 0));
-        assert_true(far_list_agrees(&m, 40, 5 * cycle, last / 41 * cycle, 0));
-        assert_true(far_list_agrees(&m, 40, 0, 7 * cycle, 4 * last * cycle));
-        /* Across the limit while the last messages are under way; by those that begin; across that
-         * of 31 and of 32 bits. */
-        assert_false(far_list_agrees(&m, 40, (last - 45) * cycle, cycle, 0));
-        assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, 0));
-        assert_false(far_list_agrees(&m, 40, 0, last / 8 * cycle, 0));
-        assert_false(far_list_agrees(&m, 40, (2 * last - 20) * cycle, 7 * cycle, 0));
-        assert_false(far_list_agrees(&m, 40, (4 * last - 20) * cycle, 7 * cycle, 0));
-        assert_false(far_list_agrees(&m, 40, 4 * last * cycle, 7 * cycle, 0));
-        assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, (last + 9) * cycle));
-        /* Whom the stop cuts off is not stuck, although his arrival was told before. */
-        struct machine_spec uneven = m;
-        uneven.network.hop_latency = 5.5e-9;
-        for (sim_ps stop = cycle; stop < 40 * cycle; stop += cycle)
-            assert_false(far_list_agrees(&uneven, 1, 0, cycle, stop));
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -530,8 +361,6 @@ int main(void)
         cmocka_unit_test(gathered_and_single_events_give_the_same),
         cmocka_unit_test(looks_have_one_order_when_credits_are_back_at_once),
         cmocka_unit_test(lists_in_cycles_agree),
-        cmocka_unit_test(lists_on_compared_networks_agree),
-        cmocka_unit_test(late_cycles_are_played_by_events),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
