@@ -141,9 +141,7 @@ static void alone_again(void *subject, uint64_t argument, sim_ps now)
 }
 
 /* Event: the time of something that had no slot has come. If it still has none, it is looked at by
- * itself. Also what an earlier look has overtaken has its turn in this instant, since it may be
- * asked for again before that comes. argument: the number of a resource (of a node's port), then of
- * routers. */
+ * itself. argument: the number of a resource (of a node's port), then of routers. */
 static void enter(void *subject, uint64_t argument, sim_ps now)
 {
     struct routers *g = subject;
@@ -151,6 +149,7 @@ static void enter(void *subject, uint64_t argument, sim_ps now)
     const uint64_t resources = (uint64_t)n->nresource;
     const bool source = argument < resources;
     const int i = (int)(source ? argument : argument - resources);
+    if ((source ? g->fabric.resource[i].wake : g->router[i].wake) != now + 1) return;
     struct gather_slot *s = slot_of(g, now);
     if (s) gather_set_add(source ? &s->source : &s->router, i);
     else
