@@ -16,6 +16,17 @@
 
 static inline int below(struct random *r, int n) { return (int)random_below(r, (uint64_t)n); }
 
+/* A square torus with a node at each router. */
+static inline struct topology_spec torus_of(int side)
+{
+    return (struct topology_spec){.family = TOPOLOGY_TORUS,
+                                  .ndim = 2,
+                                  .dims = {side, side},
+                                  .nodes_per_router = 1,
+                                  .processors_per_node = 1,
+                                  .tie = TIE_RANDOM};
+}
+
 /* n messages without dependencies. */
 static inline struct traffic list_of(int n, struct arena *a)
 {
@@ -29,7 +40,7 @@ static inline struct traffic list_of(int n, struct arena *a)
 
 /* What a replay tells, with arrays in a. */
 static inline bool play(const struct machine_spec *m, const struct traffic *q, bool singly,
-                 struct arena *a, struct traffic_result *r, struct err *e)
+                        struct arena *a, struct traffic_result *r, struct err *e)
 {
     struct traffic list = *q;
     const struct topology *t = topology_create(&m->topology, a, e);

@@ -71,12 +71,7 @@ static void looks_that_are_not_needed_any_more_change_no_order(void **state)
     (void)state;
     enum { MESSAGES = 2300, SIDE = 8, CYCLES = 170 };
     static const int seed[] = {5, 10, 986, 1165, 1190};
-    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
-                                    .ndim = 2,
-                                    .dims = {SIDE, SIDE},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1,
-                                    .tie = TIE_RANDOM};
+    const struct topology_spec s = torus_of(SIDE);
     struct machine_spec m = netcheck_machine(&s, 4, 16, 0, 3);
     m.network.hop_latency = 7e-9;
     m.network.routing_latency = 1e-9;

@@ -123,6 +123,26 @@ static void draw_list(struct random *r, int nnode, struct arena *a, struct traff
     if (below(r, 4) == 0) q->stop = (sim_ps)span * 500;
 }
 
+/* A machine of any network, and a list of messages for it. */
+struct drawn {
+    struct machine_spec machine;
+    struct traffic list;
+};
+
+static struct drawn draw(struct random *r, struct arena *a)
+{
+    struct drawn d;
+    struct topology_spec s = draw_network(r);
+    struct err e;
+    err_clear(&e);
+    draw_cables(r, &s);
+    d.machine = draw_machine(r, &s);
+    const struct topology *t = topology_create(&d.machine.topology, a, &e);
+    assert_non_null(t);
+    draw_list(r, t->nnode, a, &d.list);
+    return d;
+}
+
 static void same(const struct traffic_result *x, const struct traffic_result *y, int n, int trial)
 {
     for (int m = 0; m < n; m++)
@@ -159,22 +179,17 @@ static void gathered_and_single_events_give_the_same(void **state)
     uint64_t times = DIGEST_START;
     for (int trial = 0; trial < TRIALS; trial++) {
         struct arena *a = arena_create();
-        struct topology_spec s = draw_network(&r);
+        const struct drawn d = draw(&r, a);
+        const int n = d.list.nmessage;
+        struct traffic_result x, y;
         struct err e;
         err_clear(&e);
-        draw_cables(&r, &s);
-        const struct machine_spec m = draw_machine(&r, &s);
-        const struct topology *t = topology_create(&m.topology, a, &e);
-        struct traffic q;
-        struct traffic_result x, y;
-        assert_non_null(t);
-        draw_list(&r, t->nnode, a, &q);
         /* Rules for other families, buffers that are too small: the same refusal. */
-        if (play(&m, &q, true, a, &x, &e)) {
-            assert_true(play(&m, &q, false, a, &y, &e));
-            same(&x, &y, q.nmessage, trial);
-            if (trial % 4 == 0) play_in_cycles(&m, &q, a, &x, trial, &clocked);
-            times = times_mix(times, &x, q.nmessage);
+        if (play(&d.machine, &d.list, true, a, &x, &e)) {
+            assert_true(play(&d.machine, &d.list, false, a, &y, &e));
+            same(&x, &y, n, trial);
+            if (trial % 4 == 0) play_in_cycles(&d.machine, &d.list, a, &x, trial, &clocked);
+            times = times_mix(times, &x, n);
             played++;
             fewer += y.events < x.events;
             locked += x.deadlock;
@@ -187,18 +202,25 @@ static void gathered_and_single_events_give_the_same(void **state)
     assert_int_equal(times, TIMES);
 }
 
+/* A list by single and by gathered events. */
+static void both_agree(const struct machine_spec *m, const struct traffic *q, int trial,
+                       struct arena *a)
+{
+    struct traffic_result x, y;
+    struct err e;
+    err_clear(&e);
+    assert_true(play(m, q, true, a, &x, &e) && play(m, q, false, a, &y, &e));
+    same(&x, &y, q->nmessage, trial);
+}
+
 /* The list that is drawn from `trial` for the nodes of m, both ways. */
 static void lists_agree(const struct machine_spec *m, int nnode, int trial)
 {
     struct arena *a = arena_create();
     struct random r = random_make((uint64_t)trial, 0, 0);
     struct traffic q;
-    struct traffic_result x, y;
-    struct err e;
-    err_clear(&e);
     draw_list(&r, nnode, a, &q);
-    assert_true(play(m, &q, true, a, &x, &e) && play(m, &q, false, a, &y, &e));
-    same(&x, &y, q.nmessage, trial);
+    both_agree(m, &q, trial, a);
     arena_destroy(a);
 }
 
@@ -244,12 +266,7 @@ static void who_lost_does_not_try_again_in_the_same_instant(void **state)
 {
     (void)state;
     static const int trial[] = {383, 518, 686};
-    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
-                                    .ndim = 2,
-                                    .dims = {2, 2},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1,
-                                    .tie = TIE_RANDOM};
+    const struct topology_spec s = torus_of(2);
     struct machine_spec m = netcheck_machine(&s, 4, 8, 0, 3);
     m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
     m.network.level = LEVEL_PACKET;
@@ -263,12 +280,7 @@ static void who_lost_does_not_try_again_in_the_same_instant(void **state)
 static void who_lost_does_not_try_again_within_a_flit(void **state)
 {
     (void)state;
-    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
-                                    .ndim = 2,
-                                    .dims = {2, 2},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1,
-                                    .tie = TIE_RANDOM};
+    const struct topology_spec s = torus_of(2);
     struct machine_spec m = netcheck_machine(&s, 4, 8, 0, 3);
     m.network.hop_latency = 4e-9;
     m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
@@ -286,17 +298,9 @@ static void looks_have_one_order_when_credits_are_back_at_once(void **state)
     for (size_t i = 0; i < sizeof trial / sizeof *trial; i++) {
         struct random r = random_make(77, (uint64_t)trial[i], 7);
         struct arena *a = arena_create();
-        struct topology_spec s = draw_network(&r);
-        struct traffic q;
-        struct traffic_result x, y;
-        struct err e;
-        err_clear(&e);
-        draw_cables(&r, &s);
-        const struct machine_spec m = draw_machine(&r, &s);
-        draw_list(&r, topology_create(&m.topology, a, &e)->nnode, a, &q);
-        assert_true(m.network.credit_latency == 0);
-        assert_true(play(&m, &q, true, a, &x, &e) && play(&m, &q, false, a, &y, &e));
-        same(&x, &y, q.nmessage, trial[i]);
+        const struct drawn d = draw(&r, a);
+        assert_true(d.machine.network.credit_latency == 0);
+        both_agree(&d.machine, &d.list, trial[i], a);
         arena_destroy(a);
     }
 }
