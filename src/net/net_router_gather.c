@@ -200,10 +200,9 @@ bool router_gather(struct net *n)
     g->fabric.wake = post_source;
     g->post = post_gathered;
     g->fabric.ahead = true;
-    /* At different rates who lost comes back too late for some turns; where packets must fit, who
-     * finds no room does not know when to come back; and where credits are back at once, the order
-     * of looks counts: there a look without need is none. */
-    g->spares = g->even && !n->routing->fits && g->credit > 0;
+    /* At different rates who lost comes back too late for some turns, and where packets must fit,
+     * who finds no room does not know when to come back: there a look without need is none. */
+    g->spares = g->even && !n->routing->fits;
     g->quick = g->spares && g->single;
     return true;
 }
