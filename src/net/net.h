@@ -33,9 +33,12 @@ enum { NET_ID_JOB = 56, NET_ID_RANKS = 0xffffff };
 /* One message on its way; embedded in the mailbox's own struct, which stays in place until
  * deliver. */
 struct net_message {
-    int src, dst;       /* nodes (not ranks, not routers) */
+    /* Nodes (not ranks, not routers). Not side by side: compilers would load both as one word just
+     * after they were stored as two, which has to wait until the stores are done. */
+    int src;
     /* of the source node that sends: the own messages of `uncontended` are its */
     int processor;
+    int dst;
     /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
     uint32_t path;
     int64_t bytes;      /* payload >= 0 */

@@ -20,17 +20,29 @@ static inline struct link_load *net_load(struct net *n, size_t at)
     return &n->load[at];
 }
 
-/* net_account: resource was used for `busy` by m (or a part of it: messages 0) that waited `queue`
- * for it. */
-static inline void net_account(struct net *n, int resource, const struct net_message *m,
-                               int messages, int64_t bytes, sim_ps busy, sim_ps queue)
+/* net_job: the job that m belongs to. */
+static inline int net_job(const struct net_message *m) { return (int)(m->id >> NET_ID_JOB); }
+
+/* net_account: resource was used for `busy` by a message of `job` (or a part of one: messages 0)
+ * that waited `queue` for it. */
+static inline void net_account(struct net *n, int resource, int job, int messages, int64_t bytes,
+                               sim_ps busy, sim_ps queue)
 {
     if (!n->load) return;
-    struct link_load *l = net_load(n, (m->id >> NET_ID_JOB) * n->nresource + resource);
+    struct link_load *l = net_load(n, (size_t)job * (size_t)n->nresource + (size_t)resource);
     l->messages += messages;
     l->bytes += bytes;
     l->busy_ps += busy;
     l->queue_ps += queue;
+}
+
+/* net_account_early: asks for the memory that net_account will need. */
+static inline void net_account_early(const struct net *n, int resource, int job)
+{
+    if (!n->load) return;
+    const struct link_load *l = &n->load[(size_t)job * (size_t)n->nresource + (size_t)resource];
+    __builtin_prefetch(&l->messages, 1);
+    __builtin_prefetch(&l->queue_ps, 1);
 }
 
 #endif

@@ -117,7 +117,7 @@ static void auto_account(struct fabric *f, const struct flight *w, sim_ps wait)
         const struct pass *s = &w->pass[h];
         slow = later(slow, s->flit);
         int64_t gaps = (int64_t)(w->npacket - 1) * (w->full - 1) + w->last - 1;
-        net_account(f->net, s->resource, w->m, 1, w->m->bytes,
+        net_account(f->net, s->resource, net_job(w->m), 1, w->m->bytes,
                     gaps * slow + w->npacket * s->flit, h == 0 ? wait : 0);
     }
 }

@@ -23,22 +23,25 @@ struct flight {
     struct route_cursor cursor;
     int resource; /* where the head arrives next */
     int port;     /* through which it arrives there */
-    uint32_t key; /* of m, in the order of events */
+    /* of m: what net_event_key takes of its number, and its job above (KEY_JOB) */
+    uint32_t key;
     /* At the end of the way: */
     struct net_rate slow; /* slowest rate of the route */
-    struct flight *next;  /* in the pool of unused ones */
     struct route *route;  /* its way by a rule of network.routing, NULL: `cursor` */
     uint32_t path;        /* node at which the head was last, where critical paths are recorded */
     int ejection;         /* the last resource */
 } __attribute__((aligned(64)));
 _Static_assert(offsetof(struct flight, slow) == 64, "a head touches one line");
+enum { KEY_JOB = 24 };
+static inline int flight_job(const struct flight *f) { return (int)(f->key >> KEY_JOB); }
 
 struct link_level {
     sim_ps *free;     /* (nresource) from when on */
     /* (nnode x processors) injection port had no other processor of the node sent anything */
     sim_ps *own_port;
     int nprocessor;
-    struct flight *pool;
+    struct flight **unused; /* (nunused) of nflight in all, which is the room of the list, too */
+    int nunused, nflight;
 };
 
 static void head_arrives(void *subject, uint64_t argument, sim_ps now);
@@ -60,26 +63,33 @@ static bool link_create(struct net *n, struct err *e)
 }
 
 /* Flights in use are messages in the network: after the busiest moment nothing is allocated any
- * more. */
+ * more. The list of unused ones grows by doubling, since an arena gives nothing back. */
+static void flights_make(struct net *n)
+{
+    enum { FIRST = 256 };
+    struct link_level *g = n->state;
+    const int count = g->nflight > 0 ? g->nflight : FIRST;
+    struct flight *more = TAKE(n->arena, count, struct flight);
+    struct route *route = n->routing ? TAKE(n->arena, count, struct route) : NULL;
+    g->nflight += count;
+    g->unused = TAKE(n->arena, g->nflight, struct flight *);
+    for (int i = count - 1; i >= 0; i--) {
+        if (route) more[i].route = &route[i];
+        g->unused[g->nunused++] = &more[i];
+    }
+}
+
 static struct flight *flight_take(struct net *n)
 {
-    enum { CHUNK = 256 };
+    enum { AHEAD = 4 };
     struct link_level *g = n->state;
-    if (!g->pool) {
-        struct flight *chunk = TAKE(n->arena, CHUNK, struct flight);
-        struct route *route = n->routing ? TAKE(n->arena, CHUNK, struct route) : NULL;
-        for (int i = 0; i < CHUNK; i++) {
-            chunk[i].next = i + 1 < CHUNK ? &chunk[i + 1] : NULL;
-            if (route) chunk[i].route = &route[i];
-        }
-        g->pool = chunk;
-    }
-    struct flight *f = g->pool;
-    g->pool = f->next;
-    /* For the next message: long unused ones are cold. */
-    if (g->pool) {
-        __builtin_prefetch(g->pool);
-        __builtin_prefetch((const char *)g->pool + 64);
+    if (g->nunused == 0) flights_make(n);
+    struct flight *f = g->unused[--g->nunused];
+    /* For messages to come: long unused ones are cold. */
+    if (g->nunused >= AHEAD) {
+        const char *later = (const char *)g->unused[g->nunused - AHEAD];
+        __builtin_prefetch(later, 1);
+        __builtin_prefetch(later + 64, 1);
     }
     return f;
 }
@@ -88,13 +98,12 @@ static struct flight *flight_take(struct net *n)
 static void flight_return(struct net *n, struct flight *f)
 {
     struct link_level *g = n->state;
-    f->next = g->pool;
-    g->pool = f;
+    g->unused[g->nunused++] = f;
 }
 
-/* the message m takes `resource` at `now` or when it is free; returns when */
-static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, int64_t bytes,
-                            sim_ps now, sim_ps busy)
+/* the message of f takes `resource` at `now` or when it is free; returns when */
+static sim_ps resource_take(struct net *n, int resource, const struct flight *f, sim_ps now,
+                            sim_ps busy)
 {
     struct link_level *g = n->state;
     /* Others' messages go by links alone; those that came since a link was last taken are served
@@ -106,7 +115,7 @@ static sim_ps resource_take(struct net *n, int resource, const struct net_messag
     }
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
-    net_account(n, resource, m, 1, bytes, busy, at - now);
+    net_account(n, resource, flight_job(f), 1, f->bytes, busy, at - now);
     return at;
 }
 
@@ -181,7 +190,7 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
     struct net *n = subject;
     struct flight *f = (struct flight *)(uintptr_t)argument;
     sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->bytes), f->flits);
-    sim_ps x = resource_take(n, f->resource, f->m, f->bytes, now, busy);
+    sim_ps x = resource_take(n, f->resource, f, now, busy);
     if (n->path) f->path = net_path_hops(n, f->path, 1, f->resource);
     if (!net_is_ejection(n, f->resource)) {
         head_sent(n, f, x);
@@ -206,7 +215,7 @@ static void link_inject(struct net *n, struct net_message *m)
     f->m = m;
     f->bytes = m->bytes;
     f->flits = net_flits(n, m->bytes);
-    f->key = (uint32_t)(m->id & 0xffffff);
+    f->key = (uint32_t)(m->id & 0xffffff) | (uint32_t)net_job(m) << KEY_JOB;
     f->ejection = net_ejection(n, m->dst);
     f->slow = slow;
     if (n->routing) {
@@ -225,7 +234,7 @@ static void link_inject(struct net *n, struct net_message *m)
         own = m->ready > *port ? m->ready : *port;
         *port = ps_later(own, busy);
     }
-    m->injected = resource_take(n, net_injection(n, m->src), m, m->bytes, m->ready, busy);
+    m->injected = resource_take(n, f->resource, f, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
     /* The closed form of the empty network from there on. */
     m->uncontended =
@@ -260,6 +269,7 @@ static void head_early(void *subject, uint64_t argument, int step)
     }
     __builtin_prefetch(&f->slow);
     __builtin_prefetch(&g->free[f->resource]);
+    net_account_early(n, f->resource, flight_job(f));
     for (int line = 0; last && line < 3; line++)
         __builtin_prefetch((const char *)f->m + 64 * line);
 }

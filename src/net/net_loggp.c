@@ -59,7 +59,7 @@ static void loggp_inject(struct net *n, struct net_message *m)
             net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
         m->path = net_path_tail(n, net_path_way(n, sent, m, way), slow, m->bytes);
     }
-    net_account(n, net_injection(n, m->src), m, 1, m->bytes, busy, m->injected - m->ready);
+    net_account(n, net_injection(n, m->src), net_job(m), 1, m->bytes, busy, m->injected - m->ready);
     net_arrive(n, m);
 }
 

@@ -68,7 +68,7 @@ static inline void worm_account(struct routers *g, const struct worm *w, int p, 
 {
     struct net *n = g->fabric.net;
     if (n->load)
-        net_account(n, p, w->flight->m, w->index == 0, w->index == 0 ? w->flight->m->bytes : 0,
+        net_account(n, p, net_job(w->flight->m), w->index == 0, w->index == 0 ? w->flight->m->bytes : 0,
                     w->flits * g->port[p].flit, queue);
 }
 

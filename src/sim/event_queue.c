@@ -30,6 +30,7 @@ void event_queue_done(struct event_queue *q)
 {
     free(q->run);
     free(q->heap);
+    free(q->chunk);
     free(q->key);
     free(q->scratch);
     while (q->slab) {
@@ -230,18 +231,20 @@ static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n
         k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
 }
 
-/* The old keys and chunks are those of a window that is over, so they are freed and not copied. */
+/* The old ones are those of a window that is over, so they are freed and not copied. */
 static void run_room(struct event_queue *q, uint32_t chunks)
 {
     if (chunks <= q->chunk_capacity) return;
     q->chunk_capacity = chunks * 2;
-    q->key_capacity = q->chunk_capacity * CHUNK_EVENTS;
+    q->run_capacity = q->chunk_capacity * CHUNK_EVENTS;
     free(q->run);
+    free(q->chunk);
     free(q->key);
     free(q->scratch);
-    q->run = memory_take(q->chunk_capacity, sizeof *q->run);
-    q->key = memory_take(q->key_capacity, sizeof *q->key);
-    q->scratch = memory_take(q->key_capacity, sizeof *q->scratch);
+    q->run = memory_take(q->run_capacity, sizeof *q->run);
+    q->chunk = memory_take(q->chunk_capacity, sizeof *q->chunk);
+    q->key = memory_take(q->run_capacity, sizeof *q->key);
+    q->scratch = memory_take(q->run_capacity, sizeof *q->scratch);
 }
 
 /* What the first events of the next window are about: a window may be too short to ask in. */
@@ -254,41 +257,42 @@ static inline void warm_up_next(const struct event_queue *q, int slot)
         __builtin_prefetch((const void *)(uintptr_t)c->event[i].argument);
 }
 
-/* Make a bucket of level 0 the run: its events stay where they are. */
-static void run_begin(struct event_queue *q, int slot)
+/* The keys of a window's events, in the order of posting; how many. */
+static uint32_t keys_make(struct event_queue *q, const struct event_chain *chain)
 {
-    const struct event_chain chain = wheel_cut(q, 0, slot);
-    uint32_t chunks = 0, n = 0;
-    move_to(q, 0, slot);
-    for (const struct event_chunk *c = chain.first; c; c = c->next) chunks++;
-    run_room(q, chunks);
-    q->run_chunks = 0;
-    for (struct event_chunk *c = chain.first; c; c = c->next) {
-        const uint32_t index = q->run_chunks * CHUNK_EVENTS;
+    uint32_t n = 0, chunks = 0;
+    for (struct event_chunk *c = chain->first; c; c = c->next) {
+        const uint32_t index = chunks * CHUNK_EVENTS;
         for (uint32_t i = 0; i < c->count; i++) {
             const struct event *e = &c->event[i];
             const uint32_t after = (uint32_t)e->time & ((UINT32_C(1) << WINDOW_BITS) - 1);
             q->key[n++] = (struct event_key){e->order, after, index + i};
         }
-        q->run[q->run_chunks++] = c;
+        q->chunk[chunks++] = c;
+    }
+    return n;
+}
+
+/* Make a bucket of level 0 the run. Its events are moved once more, into their order: so they are
+ * found without a table, also those that are asked for ahead, and the chunks are used again at
+ * once. */
+static void run_begin(struct event_queue *q, int slot)
+{
+    const struct event_chain chain = wheel_cut(q, 0, slot);
+    uint32_t chunks = 0;
+    move_to(q, 0, slot);
+    for (const struct event_chunk *c = chain.first; c; c = c->next) chunks++;
+    run_room(q, chunks);
+    const uint32_t n = keys_make(q, &chain);
+    keys_sort(q->key, q->scratch, n);
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t index = q->key[i].index;
+        q->run[i] = q->chunk[index / CHUNK_EVENTS]->event[index % CHUNK_EVENTS];
     }
     q->run_at = 0;
     q->run_count = n;
-    keys_sort(q->key, q->scratch, n);
+    for (uint32_t i = 0; i < chunks; i++) chunk_give(q, q->chunk[i]);
     warm_up_next(q, slot);
-}
-
-/* The chunks of a run that is over go back. */
-static void run_end(struct event_queue *q)
-{
-    for (uint32_t i = 0; i < q->run_chunks; i++) chunk_give(q, q->run[i]);
-    q->run_chunks = q->run_at = q->run_count = 0;
-}
-
-static inline const struct event *run_event(const struct event_queue *q, uint32_t at)
-{
-    const uint32_t index = q->key[at].index;
-    return &q->run[index / CHUNK_EVENTS]->event[index % CHUNK_EVENTS];
 }
 
 void event_queue_push(struct event_queue *q, const struct event *e)
@@ -307,7 +311,7 @@ void event_queue_push(struct event_queue *q, const struct event *e)
 static bool advance(struct event_queue *q, sim_ps last)
 {
     int level = 0, slot = 0;
-    run_end(q);
+    q->run_at = q->run_count = 0;
     for (;;) {
         CHECK(wheel_first(q, &level, &slot));
         if (window_at(q, level, slot) << WINDOW_BITS > (uint64_t)last) return false;
@@ -323,10 +327,8 @@ static bool advance(struct event_queue *q, sim_ps last)
 static inline bool run_first(const struct event_queue *q)
 {
     if (q->heap_count == 0) return true;
-    const struct event_key *k = &q->key[q->run_at];
-    const struct event *h = &q->heap[0].event;
-    const sim_ps time = (sim_ps)(q->window << WINDOW_BITS | k->after);
-    return time != h->time ? time < h->time : k->order <= h->order;
+    const struct event *r = &q->run[q->run_at], *h = &q->heap[0].event;
+    return r->time != h->time ? r->time < h->time : r->order <= h->order;
 }
 
 /* Records that events are about lie anywhere in memory, each reached through the one before: what
@@ -334,14 +336,14 @@ static inline bool run_first(const struct event_queue *q)
 static inline void warm_up(const struct event_queue *q)
 {
     enum { STEP = 3 };
-    if (q->run_at + FAR < q->run_count)
-        __builtin_prefetch((const void *)(uintptr_t)run_event(q, q->run_at + FAR)->argument);
+    const struct event *run = &q->run[q->run_at];
+    const uint32_t left = q->run_count - q->run_at;
+    if (left > FAR) __builtin_prefetch((const void *)(uintptr_t)run[FAR].argument);
     if (!q->foreseen) return;
     for (int step = 0; step < q->steps; step++) {
-        const uint32_t ahead = q->run_at + FAR - (uint32_t)(step + 1) * STEP;
-        if (ahead >= q->run_count) continue;
-        const struct event *e = run_event(q, ahead);
-        if (e->action == q->foreseen) q->early(e->subject, e->argument, step);
+        const uint32_t ahead = FAR - (uint32_t)(step + 1) * STEP;
+        if (left > ahead && run[ahead].action == q->foreseen)
+            q->early(run[ahead].subject, run[ahead].argument, step);
     }
 }
 
@@ -350,7 +352,7 @@ bool event_queue_pop_by(struct event_queue *q, sim_ps last, struct event *e)
     if (q->count == 0) return false;
     if (q->run_at == q->run_count && q->heap_count == 0 && !advance(q, last)) return false;
     const bool run = q->run_at < q->run_count && run_first(q);
-    const struct event *first = run ? run_event(q, q->run_at) : &q->heap[0].event;
+    const struct event *first = run ? &q->run[q->run_at] : &q->heap[0].event;
     if (first->time > last) return false;
     q->count--;
     if (run) {
@@ -372,7 +374,7 @@ bool event_queue_pop(struct event_queue *q, struct event *e)
 sim_ps event_queue_next_time(const struct event_queue *q)
 {
     if (q->count == 0) return SIM_NEVER;
-    if (q->run_at < q->run_count && run_first(q)) return run_event(q, q->run_at)->time;
+    if (q->run_at < q->run_count && run_first(q)) return q->run[q->run_at].time;
     if (q->heap_count) return q->heap[0].event.time;
     int level, slot;
     CHECK(wheel_first(q, &level, &slot));

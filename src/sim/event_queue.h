@@ -50,11 +50,11 @@ enum {
     WHEEL_LEVELS = (63 - WINDOW_BITS + WHEEL_BITS - 1) / WHEEL_BITS
 };
 
-/* Where an event of the present window stands in its order. */
+/* Where an event of a window stands in its order. */
 struct event_key {
     uint64_t order;
     uint32_t after; /* the window's beginning [ps] */
-    uint32_t index; /* chunk of the run times CHUNK_EVENTS, and place there */
+    uint32_t index; /* chunk of the window times CHUNK_EVENTS, and place there */
 };
 
 struct event_queue {
@@ -62,11 +62,13 @@ struct event_queue {
     uint64_t window;              /* number of the present window */
     uint64_t next_age;
     uint64_t count;               /* pending, all together */
-    /* (run_chunks) owned: the events of this window that were posted before it, */
-    struct event_chunk **run;
-    struct event_key *key;        /* (run_count) owned: sorted; */
-    struct event_key *scratch;    /* (key_capacity) owned: for sorting */
-    uint32_t run_at, run_count, run_chunks, chunk_capacity, key_capacity;
+    /* (run_count) owned: the events of this window that were posted before it, sorted */
+    struct event *run;
+    uint32_t run_at, run_count;
+    /* owned, for sorting: (chunk_capacity) a window's chunks, (run_capacity) their keys, twice */
+    struct event_chunk **chunk;
+    struct event_key *key, *scratch;
+    uint32_t chunk_capacity, run_capacity;
     struct event_late *heap;      /* (heap_count) owned: posted since */
     uint32_t heap_count, heap_capacity;
     sim_action *foreseen;         /* see sim_foresee; NULL: none */

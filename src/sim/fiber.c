@@ -292,7 +292,7 @@ static inline void switch_out(struct fiber *f)
 }
 
 /* The first lines of a fiber are those that jump_fcontext saved on top of its stack. */
-void fiber_prefetch(const struct fiber *f)
+void fiber_prefetch_stack(const struct fiber *f)
 {
     const char *top = f->context;
     for (int line = 0; line < 6; line++) __builtin_prefetch(top + 64 * line);
@@ -326,7 +326,7 @@ static inline void switch_in(struct fiber *f) { swapcontext(&f->outside, &f->con
 
 static inline void switch_out(struct fiber *f) { swapcontext(&f->context, &f->outside); }
 
-void fiber_prefetch(const struct fiber *f) { __builtin_prefetch(f); }
+void fiber_prefetch_stack(const struct fiber *f) { (void)f; }
 
 const char *fiber_backend(void) { return "ucontext"; }
 #endif

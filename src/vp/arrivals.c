@@ -48,12 +48,14 @@ void arrivals_add(struct world *w, struct message *m)
  * time, port and number. */
 void arrivals_give(struct world *w)
 {
-    enum { FAR = ARRIVALS_FAR, MIDDLE = ARRIVALS_MIDDLE, NEAR = ARRIVALS_NEAR };
     struct arrivals *a = w->arrivals;
     for (int i = 0; i < a->n && !w->stopped; i++) {
-        if (i + FAR < a->n) arrivals_warm_message(a->message[i + FAR]);
-        if (i + MIDDLE < a->n) arrivals_warm_receiver(a->message[i + MIDDLE]->to);
-        if (i + NEAR < a->n) arrivals_warm_stack(a->message[i + NEAR]->to);
+        const int left = a->n - i;
+        struct message *const *next = &a->message[i];
+        if (left > ARRIVALS_MESSAGE) arrivals_warm_message(next[ARRIVALS_MESSAGE]);
+        if (left > ARRIVALS_RECEIVER) arrivals_warm_receiver(next[ARRIVALS_RECEIVER]->to);
+        if (left > ARRIVALS_FIBER) arrivals_warm_fiber(next[ARRIVALS_FIBER]->to);
+        if (left > ARRIVALS_STACK) arrivals_warm_stack(next[ARRIVALS_STACK]->to);
         w->arrived(a->message[i]);
         world_resume(w, INT64_MAX);
     }

@@ -23,8 +23,8 @@ void arrivals_give(struct world *w);
 bool arrivals_step(struct world *w);
 
 /* All that a receiver touches lies cold in memory, each behind the one before; a list of messages
- * tells early who is next: how many messages ahead each of the three steps is asked for. */
-enum { ARRIVALS_FAR = 9, ARRIVALS_MIDDLE = 6, ARRIVALS_NEAR = 3 };
+ * tells early who is next: how many messages ahead each of the four steps is asked for. */
+enum { ARRIVALS_MESSAGE = 12, ARRIVALS_RECEIVER = 9, ARRIVALS_FIBER = 6, ARRIVALS_STACK = 3 };
 
 /* arrivals_warm_message: ask for m. */
 static inline void arrivals_warm_message(const struct message *m)
@@ -38,11 +38,17 @@ static inline void arrivals_warm_receiver(const struct vp *v)
     for (int line = 0; line < 3; line++) __builtin_prefetch((const char *)v + 64 * line);
 }
 
+/* arrivals_warm_fiber: then: for where its stack and the row of its stage are told. */
+static inline void arrivals_warm_fiber(const struct vp *v)
+{
+    fiber_prefetch(v->fiber);
+    vp_warm_stage(v);
+}
+
 /* arrivals_warm_stack: then: for what v waits with. */
 static inline void arrivals_warm_stack(const struct vp *v)
 {
-    fiber_prefetch(v->fiber);
-    __builtin_prefetch(v->stages + v->stage);
+    fiber_prefetch_stack(v->fiber);
     if (!v->posted) return;
     __builtin_prefetch(v->posted);
     __builtin_prefetch((const char *)v->posted + 64);

@@ -57,19 +57,23 @@ static inline struct vp *ready_ahead(const struct world *w, int ahead)
 }
 
 /* With many ranks each lies cold in memory when its turn comes: the ring tells early
- * enough who is next. Six ahead the rank's state, three ahead its stack and request, one
- * ahead its message: each is reached through the one before. */
+ * enough who is next. Eight ahead the rank's state, five ahead its fiber, three ahead its stack and
+ * request, one ahead its message: each is reached through the one before. */
 static inline void warm_up(const struct world *w)
 {
-    const struct vp *far = ready_ahead(w, 6), *near = ready_ahead(w, 3);
+    const struct vp *far = ready_ahead(w, 8), *middle = ready_ahead(w, 5),
+                    *near = ready_ahead(w, 3);
     if (far) {
         __builtin_prefetch(far);
         __builtin_prefetch((const char *)far + 64);
         __builtin_prefetch((const char *)far + 128);
     }
+    if (middle) {
+        fiber_prefetch(middle->fiber);
+        vp_warm_stage(middle);
+    }
     if (near) {
-        fiber_prefetch(near->fiber);
-        __builtin_prefetch(near->stages + near->stage);
+        fiber_prefetch_stack(near->fiber);
         if (near->waiting) __builtin_prefetch(near->waiting);
     }
     const struct vp *next = ready_ahead(w, 1);

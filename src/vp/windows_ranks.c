@@ -10,10 +10,13 @@
 /* A list of messages tells early who is next. */
 static inline void warm_up(const struct mail *in, int i)
 {
-    enum { FAR = ARRIVALS_FAR, MIDDLE = ARRIVALS_MIDDLE, NEAR = ARRIVALS_NEAR };
-    if (i + FAR < in->n) arrivals_warm_message(in->entry[i + FAR].m);
-    if (i + MIDDLE < in->n) arrivals_warm_receiver(windows_receiver(in->entry[i + MIDDLE].m));
-    if (i + NEAR < in->n) arrivals_warm_stack(windows_receiver(in->entry[i + NEAR].m));
+    const int left = in->n - i;
+    const struct entry *next = &in->entry[i];
+    if (left > ARRIVALS_MESSAGE) arrivals_warm_message(next[ARRIVALS_MESSAGE].m);
+    if (left > ARRIVALS_RECEIVER)
+        arrivals_warm_receiver(windows_receiver(next[ARRIVALS_RECEIVER].m));
+    if (left > ARRIVALS_FIBER) arrivals_warm_fiber(windows_receiver(next[ARRIVALS_FIBER].m));
+    if (left > ARRIVALS_STACK) arrivals_warm_stack(windows_receiver(next[ARRIVALS_STACK].m));
 }
 
 /* Messages are taken from and given back to the thread's own pool, whoever made them. */

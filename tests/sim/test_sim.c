@@ -356,6 +356,7 @@ static void fibers_run_when_they_are_entered_and_start_again(void **state)
         a.me = fiber_start(p, 0, runs, &a), b.me = fiber_start(p, 1, runs, &b);
         assert_int_equal(n, 0); /* nothing runs before it is entered */
         fiber_prefetch(a.me);
+        fiber_prefetch_stack(a.me);
         assert_true(fiber_enter(a.me));
         assert_false(fiber_enter(b.me));
         assert_false(fiber_enter(a.me));
