@@ -1,7 +1,7 @@
 #!/bin/bash
 # compare-peers.sh [P...] - the messages of the main scenario (inverse and forward dynamics, n = P, on the T3E's torus) by
-# mimdsim and by the simulators that are installed here, in turn on this machine: CPU seconds of the whole process, the
-# least of REPEATS (default 3) interleaved runs.
+# mimdsim on one thread and by the simulators that are installed here, in turn on this machine: CPU seconds of the whole
+# process, the least of REPEATS (default 3) interleaved runs.
 #
 # The first two columns run the program itself, arithmetic, check and database included. The others get its schedule
 # (`mimdsim timeline --format goal`): the same messages in the same order with computing times in place of arithmetic,
@@ -9,7 +9,7 @@
 # fetched, and no figure comes from elsewhere.
 #
 #   SMPI        smpicc, smpirun (Debian: libsimgrid-dev): a torus with its default flow model and the flags below;
-#               stopped after LIMIT seconds (default 120)
+#               stopped after LIMIT seconds of processor time (default 120)
 #   LogGOPSim   LogGOPSim, txt2bin: without a topology
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,11 +26,9 @@ have() { command -v "$1" >/dev/null; }
 ! have smpicc || smpicc -O2 "$here/mpi/play-schedule.c" -o play-schedule
 
 # cpu COMMAND...: user and system seconds of the whole process; "-" when it fails or takes too long.
-TIMEFORMAT='%U %S'
+${CC:-cc} -O2 -o cpu_seconds "$here/cpu_seconds.c"
 cpu() {
-    local took
-    took=$({ time timeout "$limit" "$@" >said 2>noise || echo failed >>failed; } 2>&1 | awk '{ print $1 + $2 }')
-    if [ -e failed ]; then rm -f failed; echo -; else echo "$took"; fi
+    if ./cpu_seconds "$limit" "$@" 3>took >said 2>noise; then cat took; else echo -; fi
 }
 least() { grep -v -e - "$1" | sort -g | head -n 1 | grep . || echo -; }
 
@@ -69,9 +67,9 @@ for ranks in "$@"; do
     for _ in $(seq "$repeats"); do
         for level in loggp link; do
             cpu "$mimdsim" run speedup-t3e --set "n=$ranks" --set "machine.topology.dims=[$dims]" --set level=$level \
-                --jobs 1 --force --quiet -o whole.db >>times.run.$level
+                --jobs 1 --threads 1 --force --quiet -o whole.db >>times.run.$level
             cpu "$mimdsim" run timeline.goal -m t3e-300 --set "machine.topology.dims=[$dims]" --set level=$level \
-                --jobs 1 --force --quiet -o goal.db >>times.$level
+                --jobs 1 --threads 1 --force --quiet -o goal.db >>times.$level
         done
         ! have smpicc || cpu smpirun -np "$ranks" -platform platform.xml -hostfile hosts "${smpi_flags[@]}" \
             ./play-schedule operations offsets >>times.smpi

@@ -23,8 +23,8 @@ static inline struct link_load *net_load(struct net *n, size_t at)
 /* net_job: the job that m belongs to. */
 static inline int net_job(const struct net_message *m) { return (int)(m->id >> NET_ID_JOB); }
 
-/* net_account: resource was used for `busy` by a message of `job` (or a part of one: messages 0)
- * that waited `queue` for it. */
+/* net_account: resource was used for `busy` by a message of `job` with `bytes` of payload that
+ * waited `queue` for it (or by a part of one: messages 0). */
 static inline void net_account(struct net *n, int resource, int job, int messages, int64_t bytes,
                                sim_ps busy, sim_ps queue)
 {
@@ -34,6 +34,14 @@ static inline void net_account(struct net *n, int resource, int job, int message
     l->bytes += bytes;
     l->busy_ps += busy;
     l->queue_ps += queue;
+}
+
+/* net_account_packet: the same of packet `index` of m, which counts with its first one. */
+static inline void net_account_packet(struct net *n, int resource, const struct net_message *m,
+                                      int64_t index, sim_ps busy, sim_ps queue)
+{
+    if (n->load)
+        net_account(n, resource, net_job(m), index == 0, index == 0 ? m->bytes : 0, busy, queue);
 }
 
 /* net_account_early: asks for the memory that net_account will need. */

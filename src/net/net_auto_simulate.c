@@ -62,7 +62,7 @@ static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow)
     for (int i = 0; i < granted; i++) {
         sim_ps wait = h == 0 && i == 0 ? s->begin - w->m->ready : 0;
         sim_ps busy = (flight_packet_flits(w, i) - 1) * slow + s->flit;
-        net_account(f->net, s->resource, net_job(w->m), i == 0, i == 0 ? w->m->bytes : 0, busy, wait);
+        net_account_packet(f->net, s->resource, w->m, i, busy, wait);
     }
 }
 

@@ -223,8 +223,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
     sim_ps flit = pass_of(l)->flit;
     v->owner = NULL;
     v->free = now + flit + (l->hop > 0 ? f->net->allocation : 0);
-    net_account(f->net, l->resource, net_job(m->m), w->index == 0, w->index == 0 ? m->m->bytes : 0,
-                w->flits * flit, l->first - l->ask);
+    net_account_packet(f->net, l->resource, m->m, w->index, w->flits * flit, l->first - l->ask);
     /* The gap g follows the last packet of a message. */
     if (l->hop == 0 && w->index == m->npacket - 1) {
         struct resource *o = &f->resource[l->resource];

@@ -259,9 +259,8 @@ static void tail_known(struct train *g, struct stage *s)
     o->free += l->debt;
     l->debt = 0;
     l->owner = NULL;
-    net_account(f->net, s->resource, net_job(w->flight->m), w->index == 0,
-                w->index == 0 ? w->flight->m->bytes : 0,
-                free - s->grant, s->grant - s->ask);
+    net_account_packet(f->net, s->resource, w->flight->m, w->index, free - s->grant,
+                       s->grant - s->ask);
     /* Somebody waits for the resource, or the node has more to send. */
     if (l->request || (s->hop == 0 && f->source[s->resource].front))
         packet_wake(f, s->resource, o->free);

@@ -36,7 +36,7 @@ enum { KEY_JOB = 24 };
 static inline int flight_job(const struct flight *f) { return (int)(f->key >> KEY_JOB); }
 
 struct link_level {
-    sim_ps *free;     /* (nresource) from when on */
+    sim_ps *free; /* (nresource) from when on */
     /* (nnode x processors) injection port had no other processor of the node sent anything */
     sim_ps *own_port;
     int nprocessor;
@@ -237,8 +237,7 @@ static void link_inject(struct net *n, struct net_message *m)
     m->injected = resource_take(n, f->resource, f, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
     /* The closed form of the empty network from there on. */
-    m->uncontended =
-        own + way + net_rate_time(slow, f->flits - 1) + net_end(n, m->bytes);
+    m->uncontended = own + way + net_rate_time(slow, f->flits - 1) + net_end(n, m->bytes);
     head_sent(n, f, m->injected);
 }
 
@@ -270,8 +269,7 @@ static void head_early(void *subject, uint64_t argument, int step)
     __builtin_prefetch(&f->slow);
     __builtin_prefetch(&g->free[f->resource]);
     net_account_early(n, f->resource, flight_job(f));
-    for (int line = 0; last && line < 3; line++)
-        __builtin_prefetch((const char *)f->m + 64 * line);
+    for (int line = 0; last && line < 3; line++) __builtin_prefetch((const char *)f->m + 64 * line);
 }
 
 void net_link_foresee(struct net *n) { sim_foresee(n->sim, head_arrives, head_early, 2); }

@@ -235,8 +235,7 @@ static sim_ps grant(struct fabric *f, struct resource *o, struct packet *p, sim_
         fifo_pop(f, p, now, tail, s->flit);
     }
     o->free = tail + s->flit;
-    net_account(f->net, s->resource, net_job(w->m), p->index == 0, p->index == 0 ? w->m->bytes : 0,
-                o->free - now, now - p->ask);
+    net_account_packet(f->net, s->resource, w->m, p->index, o->free - now, now - p->ask);
     if (s->hop == w->nhop) o->free += packet_ejection_setup(f);
     s->granted++;
     s->last = now;

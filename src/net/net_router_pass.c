@@ -67,9 +67,7 @@ static void worm_left(struct routers *g, struct worm *w, sim_ps tail)
 static inline void worm_account(struct routers *g, const struct worm *w, int p, sim_ps queue)
 {
     struct net *n = g->fabric.net;
-    if (n->load)
-        net_account(n, p, net_job(w->flight->m), w->index == 0, w->index == 0 ? w->flight->m->bytes : 0,
-                    w->flits * g->port[p].flit, queue);
+    net_account_packet(n, p, w->flight->m, w->index, w->flits * g->port[p].flit, queue);
 }
 
 /* When lane w may first compete with v, which sends over port `out`: never before it has a flit,

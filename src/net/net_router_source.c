@@ -57,8 +57,8 @@ static void source_flits(struct routers *g, int node, sim_ps now)
     /* The tail has gone, or will at a time that is known. The gap g follows a message. */
     v->owner = NULL;
     g->sending[node] = NULL;
-    net_account(f->net, node, net_job(m->m), l->worm->index == 0, l->worm->index == 0 ? m->m->bytes : 0,
-                l->worm->flits * flit, l->first - l->ask);
+    net_account_packet(f->net, node, m->m, l->worm->index, l->worm->flits * flit,
+                       l->first - l->ask);
     if (l->worm->index == m->npacket - 1)
         o->free = router_later(o->free, ps_later(l->tail, net_port(f->net, m->m->bytes)->gap));
 }

@@ -7,8 +7,8 @@
  * 0. An event is moved at most once a level.
  *
  * Events of one time stay in the order of posting wherever they are, since they are always in the
- * same bucket and buckets are appended to and read in order. So no event carries its age, and
- * sorting is stable. */
+ * same bucket and buckets are appended to and read in order. So no event carries its age: its
+ * place tells it. */
 #include "sim/event_queue.h"
 
 #include <stdlib.h>
@@ -17,9 +17,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 
-/* INSERTION_MOST: up to this many keys insertion sort is used, beyond it merge sort. Most windows
- * hold only a few events. */
-enum { FIRST_CAPACITY = 8, INSERTION_MOST = 12 };
+enum { FIRST_CAPACITY = 8 };
 
 /* FAR: so many events ahead the memory of an event is asked for. */
 enum { FAR = 8 };
@@ -50,11 +48,6 @@ static inline bool late_before(const struct event_late *a, const struct event_la
 {
     if (a->event.time != b->event.time) return a->event.time < b->event.time;
     return a->event.order != b->event.order ? a->event.order < b->event.order : a->age < b->age;
-}
-
-static inline bool key_before(const struct event_key *a, const struct event_key *b)
-{
-    return a->after != b->after ? a->after < b->after : a->order < b->order;
 }
 
 /* --- the heap of events posted within the present window --- */
@@ -185,7 +178,7 @@ static inline void move_to(struct event_queue *q, int level, int slot)
 {
     q->window = window_at(q, level, slot);
 }
-_Static_assert(WHEEL_LEVELS * WHEEL_BITS < 64, "the shift by a level and its bits is defined");
+_Static_assert(WHEEL_LEVELS *WHEEL_BITS < 64, "the shift by a level and its bits is defined");
 
 /* Spread a bucket over the levels below, from the first window that it covers. */
 static void wheel_spread(struct event_queue *q, int level, int slot)
@@ -201,34 +194,50 @@ static void wheel_spread(struct event_queue *q, int level, int slot)
 
 /* --- the sorted events of one window --- */
 
-/* Keys are sorted, not events: less than half of the bytes to move, and the index tells where the
- * event is. */
-static void keys_insertion(struct event_key *k, uint32_t n)
+/* Keys are sorted, not events: less than half of the bytes to move, and the place tells where the
+ * event is. Which of two keys is less nobody can foresee, so that a branch would be mispredicted
+ * half of the time: there is none. */
+static inline void keys_exchange(event_key *a, event_key *b)
 {
-    for (uint32_t i = 1; i < n; i++) {
-        struct event_key x = k[i];
-        uint32_t j = i;
-        for (; j > 0 && key_before(&x, &k[j - 1]); j--) k[j] = k[j - 1];
-        k[j] = x;
-    }
+    const event_key x = *a, y = *b;
+    *a = x < y ? x : y;
+    *b = x < y ? y : x;
 }
 
-/* Merge sort, stable, O(n log n) also in the worst case; scratch has room for n / 2 keys at least.
- * Only the left half is copied out: the merge never writes over keys of the right half that it has
- * not read. */
-static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n)
+/* Up to four, by a network. */
+static inline void keys_few(event_key *k, uint32_t n)
 {
-    if (n <= INSERTION_MOST) {
-        keys_insertion(k, n);
+    if (n < 2) return;
+    if (n == 4) keys_exchange(&k[2], &k[3]);
+    keys_exchange(&k[0], &k[1]);
+    if (n == 4) keys_exchange(&k[1], &k[3]);
+    if (n > 2) keys_exchange(&k[0], &k[2]);
+    if (n > 2) keys_exchange(&k[1], &k[2]);
+}
+
+/* Merge sort, O(n log n) also in the worst case; scratch has room for n / 2 keys at least. Only the
+ * left half is copied out: the merge never writes over keys of the right half that it has not
+ * read. */
+static void keys_sort(event_key *k, event_key *scratch, uint32_t n)
+{
+    if (n <= 4) {
+        keys_few(k, n);
         return;
     }
-    uint32_t half = n / 2, i = 0, j = half;
+    const uint32_t half = n / 2;
     keys_sort(k, scratch, half);
     keys_sort(k + half, scratch, n - half);
-    if (!key_before(&k[half], &k[half - 1])) return; /* often posted in order */
+    if (k[half - 1] < k[half]) return; /* often posted in order */
     memcpy(scratch, k, half * sizeof *k);
-    for (uint32_t out = 0; i < half; out++)
-        k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
+    const event_key *left = scratch, *right = k + half;
+    const event_key *const left_end = scratch + half, *const right_end = k + n;
+    while (left < left_end && right < right_end) {
+        const bool take_right = *right < *left;
+        *k++ = *(take_right ? right : left);
+        right += take_right;
+        left += !take_right;
+    }
+    memcpy(k, left, (size_t)(left_end - left) * sizeof *k);
 }
 
 /* The old ones are those of a window that is over, so they are freed and not copied. */
@@ -266,7 +275,7 @@ static uint32_t keys_make(struct event_queue *q, const struct event_chain *chain
         for (uint32_t i = 0; i < c->count; i++) {
             const struct event *e = &c->event[i];
             const uint32_t after = (uint32_t)e->time & ((UINT32_C(1) << WINDOW_BITS) - 1);
-            q->key[n++] = (struct event_key){e->order, after, index + i};
+            q->key[n++] = (event_key)after << 96 | (event_key)e->order << 32 | (index + i);
         }
         q->chunk[chunks++] = c;
     }
@@ -286,7 +295,7 @@ static void run_begin(struct event_queue *q, int slot)
     const uint32_t n = keys_make(q, &chain);
     keys_sort(q->key, q->scratch, n);
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t index = q->key[i].index;
+        const uint32_t index = (uint32_t)q->key[i];
         q->run[i] = q->chunk[index / CHUNK_EVENTS]->event[index % CHUNK_EVENTS];
     }
     q->run_at = 0;

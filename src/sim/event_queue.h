@@ -50,12 +50,11 @@ enum {
     WHEEL_LEVELS = (63 - WINDOW_BITS + WHEEL_BITS - 1) / WHEEL_BITS
 };
 
-/* Where an event of a window stands in its order. */
-struct event_key {
-    uint64_t order;
-    uint32_t after; /* the window's beginning [ps] */
-    uint32_t index; /* chunk of the window times CHUNK_EVENTS, and place there */
-};
+/* Where an event of a window stands in its order: from the highest bit on, 32 of its time after the
+ * window's beginning [ps], 64 of its order, 32 of its place: the number of its chunk of the window,
+ * times CHUNK_EVENTS, and the place there. No two are equal, and one comparison without a branch
+ * orders two. */
+__extension__ typedef unsigned __int128 event_key;
 
 struct event_queue {
     sim_ps now;                   /* no event is earlier */
@@ -67,7 +66,7 @@ struct event_queue {
     uint32_t run_at, run_count;
     /* owned, for sorting: (chunk_capacity) a window's chunks, (run_capacity) their keys, twice */
     struct event_chunk **chunk;
-    struct event_key *key, *scratch;
+    event_key *key, *scratch;
     uint32_t chunk_capacity, run_capacity;
     struct event_late *heap;      /* (heap_count) owned: posted since */
     uint32_t heap_count, heap_capacity;

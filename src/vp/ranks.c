@@ -1,5 +1,6 @@
 /* ranks.c - a world's ranks: made, and let go on one after the other. */
 #include "base/digest.h"
+#include "vp/arrivals.h"
 #include "vp/matching.h"
 #include "vp/meeting.h"
 #include "vp/team.h"
@@ -68,10 +69,7 @@ static inline void warm_up(const struct world *w)
         __builtin_prefetch((const char *)far + 64);
         __builtin_prefetch((const char *)far + 128);
     }
-    if (middle) {
-        fiber_prefetch(middle->fiber);
-        vp_warm_stage(middle);
-    }
+    if (middle) arrivals_warm_fiber(middle);
     if (near) {
         fiber_prefetch_stack(near->fiber);
         if (near->waiting) __builtin_prefetch(near->waiting);

@@ -131,15 +131,6 @@ _Noreturn void vp_time_out(struct vp *v);
 /* vp_stage_time: the row of the stage in progress. */
 static inline struct stage_time *vp_stage_time(struct vp *v) { return &v->stages[v->stage]; }
 
-/* vp_warm_stage: ask for its memory. */
-static inline void vp_warm_stage(const struct vp *v)
-{
-    const char *row = (const char *)&v->stages[v->stage];
-    __builtin_prefetch(row, 1);
-    __builtin_prefetch(row + sizeof *v->stages / 2, 1);
-    __builtin_prefetch(row + sizeof *v->stages - 1, 1);
-}
-
 /* vp_advance: the clock becomes `time`. One that passes the end of time stops there: its rank goes
  * no further. */
 static inline void vp_advance(struct vp *v, sim_ps time)
