@@ -1,11 +1,12 @@
 /* net_flit_event.c - wormhole switching with several virtual channels per link, flit by flit.
  *
  * Packets on different channels share a link flit by flit, so their flits are at no fixed distances
- * and each crossing is an event of the link: it first gives free channels to heads that ask, then
- * sends one flit, round robin over the channels that have a flit and a credit. Behind each channel
- * lies a ring as long as the buffer; the slot of flit n holds the time of its arrival and later
- * that of its departure, which is the credit for flit n + buffer. A node sends its packets one
- * after the other, and an input port passes on one flit at a time. */
+ * and crossings are events of the link: it first gives free channels to heads that ask, then sends
+ * one flit, round robin over the channels that have a flit and a credit, and with it those after it
+ * that nobody can meet (burst). Behind each channel lies a ring as long as the buffer; the slot of
+ * flit n holds the time of its arrival and later that of its departure, which is the credit for
+ * flit n + buffer. A node sends its packets one after the other, and an input port passes on one
+ * flit at a time. */
 #include "net/net_account.h"
 #include "net/net_flit.h"
 
@@ -46,12 +47,17 @@ struct crossing {
     struct leg *request;      /* FIFO fronts that want a channel */
     sim_ps passed;            /* when the FIFOs at its end can pass on the next flit */
     int next;                 /* channel to try first */
+    int router;               /* behind it, once there are channels */
 };
 
 struct flits {
     struct fabric fabric;     /* first */
     struct crossing *crossing;/* (nresource) */
     struct worm **free_worm;  /* by nhop / WORM_STEP */
+    int *queued;              /* (nrouter) worms in its FIFOs that are not the fronts */
+    /* nobody else's traffic takes links, and no credit is back in the instant in which its flit
+     * leaves, where it would matter who is looked at first */
+    bool bursts;
 };
 
 enum { WORM_STEP = 4 };
@@ -64,6 +70,15 @@ static inline const struct pass *pass_of(const struct leg *l)
     return &l->worm->flight->pass[l->hop];
 }
 
+static int router_behind(const struct net *n, int r)
+{
+    int from, to, port;
+    if (net_is_injection(n, r)) return topology_router_of(n->topology, r);
+    if (net_is_ejection(n, r)) return -1;
+    topology_link_ends(n->topology, r - n->nnode, &from, &to, &port);
+    return to;
+}
+
 /* Made at the first use. Ejection ports have no FIFO behind: the sink always accepts. */
 static struct vc *vcs_of(struct flits *g, int r)
 {
@@ -74,6 +89,7 @@ static struct vc *vcs_of(struct flits *g, int r)
     x->vc = TAKE(g->fabric.net->arena, n, struct vc);
     sim_ps *slot = buffer ? TAKE(g->fabric.net->arena, size_product(n, buffer), sim_ps) : NULL;
     for (int i = 0; slot && i < n; i++) x->vc[i].slot = slot + i * buffer;
+    x->router = router_behind(g->fabric.net, r);
     return x->vc;
 }
 
@@ -136,6 +152,7 @@ static void own(struct flits *g, struct leg *l, int channel)
     v->owner = l;
     if (is_last(l)) return;
     l->behind = NULL;
+    if (v->front) g->queued[g->crossing[l->resource].router]++;
     *(v->front ? &v->back->behind : &v->front) = l;
     v->back = l;
 }
@@ -233,6 +250,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
         struct vc *before = vc_before(g, l);
         before->left = now + flit;
         before->front = before->front->behind;
+        if (before->front) g->queued[g->crossing[l[-1].resource].router]--;
         front_asks(g, before);
     }
     if (!is_last(l)) return;
@@ -270,6 +288,54 @@ static void flit_send(struct flits *g, struct leg *l, sim_ps now)
     if (tail) tail_sent(g, l, now);
 }
 
+/* ---- bursts ---- */
+
+/* Before when nothing that has not happened yet can act on what l's flits find at its resource,
+ * whose only owner it is while no head asks. A head that asks has crossed the link before, a hop
+ * latency ago; or it was behind another worm whose tail has gone. Flits that come through the same
+ * input have crossed the same link, or are there. */
+static sim_ps undisturbed(const struct flits *g, const struct leg *l, sim_ps now)
+{
+    const struct fabric *f = &g->fabric;
+    if (l->hop == 0) return SIM_NEVER;
+    const int input = l[-1].resource;
+    sim_ps until = ps_later(now, f->net->tau - f->net->setup);
+    if (g->queued[g->crossing[input].router] > 0)
+        until = sooner(until, now + f->fastest + f->net->setup);
+    for (int i = 0; i < f->nchannel; i++) {
+        struct vc *v = &g->crossing[input].vc[i];
+        if (i != l[-1].channel && v->in > v->out) until = sooner(until, *slot_of(g, v, v->out));
+    }
+    /* A node looks how much room its channels have, and may not see it early. */
+    const struct vc *v = &g->crossing[input].vc[l[-1].channel];
+    const int64_t come = (f->net->tau - f->net->setup) / f->fastest + 2;
+    if (l->hop == 1 && v->in - v->out + come >= f->buffer) return now;
+    return until;
+}
+
+/* After a flit of l over resource r, whose only owner it is while no head asks: those after it, but
+ * for the tail, that cross before anything can act on them, in the same event. That they go is
+ * known to both ends at once, when they go is written beside it. */
+static void burst(struct flits *g, struct leg *l, int r, sim_ps now)
+{
+    const struct fabric *f = &g->fabric;
+    struct resource *o = &f->resource[r];
+    const sim_ps until = undisturbed(g, l, now), flit = pass_of(l)->flit;
+    struct vc *before = l->hop > 0 ? vc_before(g, l) : NULL,
+              *behind = is_last(l) ? NULL : &g->crossing[r].vc[l->channel];
+    while (l->sent + 1 < l->worm->flits) {
+        const sim_ps at = flit_ready(g, l, o->free);
+        if (at >= until) return;
+        l->sent++;
+        o->free = at + flit;
+        if (before) {
+            *slot_of(g, before, before->out++) = at;
+            g->crossing[l[-1].resource].passed = at + flit;
+        }
+        if (behind) *slot_of(g, behind, behind->in++) = at + f->net->tau - f->net->setup;
+    }
+}
+
 /* Send a flit over resource r if one can go; returns when to look again. Round robin over the
  * channels: worms that share a link get turns, flit by flit. */
 static sim_ps resource_send(struct flits *g, int r, sim_ps now)
@@ -279,10 +345,12 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
     sim_ps again = SIM_NEVER;
     bool waits = x->request != NULL;
     struct leg *go = NULL;
+    int owners = 0;
     for (int k = 0; k < n; k++) {
         int i = (x->next + k) % n;
         struct leg *l = x->vc[i].owner;
         if (!l) continue;
+        owners++;
         /* Another worm also has the link in mind: look again after this flit. */
         waits = waits || go;
         if (go) continue;
@@ -297,6 +365,7 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
     x->next = (go->channel + 1) % n;
     bool more = go->sent + 1 < go->worm->flits;
     flit_send(g, go, now);
+    if (more && owners == 1 && !waits && g->bursts && !g->fabric.debt) burst(g, go, r, now);
     return more || waits || again != SIM_NEVER ? g->fabric.resource[r].free : SIM_NEVER;
 }
 
@@ -403,6 +472,8 @@ static struct fabric *flits_create(struct net *n, struct err *e)
                                      sizeof(struct vc) + (size_t)g->fabric.buffer * sizeof(sim_ps));
     g->crossing = TAKE(n->arena, n->nresource, struct crossing);
     g->free_worm = TAKE(n->arena, (n->topology->max_hops + 2) / WORM_STEP + 1, struct worm *);
+    g->queued = TAKE(n->arena, n->topology->nrouter, int);
+    g->bursts = n->machine->noise.background_load <= 0 && n->credit > 0;
     return &g->fabric;
 }
 

@@ -109,7 +109,8 @@ static void several_channels_are_close(void **state)
 
 /* ---- lists made here ---- */
 
-enum { MOST = 600 };
+/* BURSTS: lists with several channels. */
+enum { MOST = 600, BURSTS = 1200 };
 
 struct bench {
     struct arena *arena;
@@ -117,6 +118,7 @@ struct bench {
     struct machine_spec machine;
     struct topology *topology;
     int count, delivered;
+    sim_ps grid; /* ready times are multiples of it; 0: any */
     struct net_message message[MOST];
 };
 
@@ -126,6 +128,7 @@ static void bench_open(struct bench *b, const char *topology, int vcs, int buffe
     err_clear(&e);
     b->arena = arena_create();
     b->delivered = 0;
+    b->grid = 0;
     assert_true(netcheck_topology(topology, 0, &b->spec, &e));
     b->machine = netcheck_machine(&b->spec, vcs, buffer, 0, 3);
     b->machine.network.level = LEVEL_FLIT;
@@ -254,6 +257,7 @@ static void replay(struct bench *b, const struct flit_way *way, uint64_t seed, s
     b->delivered = 0;
     for (int i = 0; i < b->count; i++) {
         at += (sim_ps)random_uniform(&r, 0, 2 * span / b->count);
+        if (b->grid > 0) at -= at % b->grid;
         b->message[i] = (struct net_message){.id = i, .ready = at};
         b->message[i].src = (int)random_below(&r, (uint64_t)b->topology->nnode);
         b->message[i].dst = (int)random_below(&r, (uint64_t)b->topology->nnode);
@@ -268,6 +272,35 @@ static void replay(struct bench *b, const struct flit_way *way, uint64_t seed, s
     arena_destroy(a);
 }
 
+/* Packets, latencies, rates, gap and arbitration by chance. */
+static void draw(struct bench *b, struct random *r)
+{
+    struct network_spec *w = &b->machine.network;
+    b->count = 20 + (int)random_below(r, MOST / 3);
+    if (random_below(r, 2)) w->packet_bytes = 16 * (1 + (int64_t)random_below(r, 30));
+    if (random_below(r, 2)) w->hop_latency = 1e-10 * (double)(1 + random_below(r, 60));
+    if (random_below(r, 2)) w->credit_latency = 1e-10 * (double)random_below(r, 60);
+    if (random_below(r, 2)) {
+        sim_ps tau = sim_from_seconds(w->hop_latency);
+        sim_ps setup = (sim_ps)random_below(r, (uint64_t)tau + 1);
+        w->routing_latency = 1e-12 * (double)random_below(r, (uint64_t)setup + 1);
+        w->vc_allocation_latency = 1e-12 * (double)setup - w->routing_latency;
+    }
+    if (random_below(r, 3) == 0) w->injection_bandwidth = 16e9 / (double)(1 + random_below(r, 4));
+    if (random_below(r, 3) == 0) w->ejection_bandwidth = 16e9 / (double)(1 + random_below(r, 4));
+    if (random_below(r, 3) == 0) b->machine.software.gap = 1e-9 * (double)random_below(r, 50);
+    if (random_below(r, 3) == 0) w->arbitration = ARBITRATION_FIRST_COME;
+}
+
+static void must_be_equal(const struct bench *b, uint64_t seed, const sim_ps *one,
+                          const sim_ps *other, const char *what)
+{
+    for (int i = 0; i < b->count; i++)
+        if (one[i] != other[i])
+            fail_msg("seed %d message %d: %lld, %lld by %s", (int)seed, i, (long long)one[i],
+                     (long long)other[i], what);
+}
+
 /* Trains work out piecewise linear times far ahead, events move single flits; they share no
  * arithmetic. With one channel they must agree, whatever the rates, latencies, buffers and
  * packets. */
@@ -280,29 +313,37 @@ static void trains_equal_single_flits(void **state)
         struct random r = random_make(seed, 8, 0);
         struct bench b;
         bench_open(&b, topologies[seed % 4], 1, 1 + (int)random_below(&r, 24));
-        struct network_spec *w = &b.machine.network;
-        b.count = 20 + (int)random_below(&r, MOST / 3);
-        if (random_below(&r, 2)) w->packet_bytes = 16 * (1 + (int64_t)random_below(&r, 30));
-        if (random_below(&r, 2)) w->hop_latency = 1e-10 * (double)(1 + random_below(&r, 60));
-        if (random_below(&r, 2)) w->credit_latency = 1e-10 * (double)random_below(&r, 60);
-        if (random_below(&r, 2)) {
-            sim_ps tau = sim_from_seconds(w->hop_latency);
-            sim_ps setup = (sim_ps)random_below(&r, (uint64_t)tau + 1);
-            w->routing_latency = 1e-12 * (double)random_below(&r, (uint64_t)setup + 1);
-            w->vc_allocation_latency = 1e-12 * (double)setup - w->routing_latency;
-        }
-        if (random_below(&r, 3) == 0)
-            w->injection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
-        if (random_below(&r, 3) == 0)
-            w->ejection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
-        if (random_below(&r, 3) == 0) b.machine.software.gap = 1e-9 * (double)random_below(&r, 50);
-        if (random_below(&r, 3) == 0) w->arbitration = ARBITRATION_FIRST_COME;
+        draw(&b, &r);
         replay(&b, &flit_train, seed, train);
         replay(&b, &flit_event, seed, flit);
-        for (int i = 0; i < b.count; i++)
-            if (train[i] != flit[i])
-                fail_msg("seed %d message %d: %lld by train, %lld by flits", (int)seed, i,
-                         (long long)train[i], (long long)flit[i]);
+        must_be_equal(&b, seed, train, flit, "flits");
+        arena_destroy(b.arena);
+    }
+}
+
+/* With several channels, flits that nobody can meet cross in one event. Where others' traffic may
+ * come between them, each has its own, as if there were some. Lists on a grid of flit times have
+ * many events at one instant. */
+static void bursts_equal_single_flits(void **state)
+{
+    (void)state;
+    static const char *const topologies[] = {"torus4x4", "torus8",  "torus4x4x2", "hcube4",
+                                             "mesh4x4",  "torus16", "mesh2x3x4"};
+    static sim_ps burst[MOST], flit[MOST];
+    for (int i = 0; i <= BURSTS; i++) {
+        /* The last one: a node that looks for room while a burst is on its way. */
+        const uint64_t seed = i < BURSTS ? (uint64_t)i : 2813;
+        struct random r = random_make(seed, 9, 0);
+        struct bench b;
+        bench_open(&b, topologies[seed % 7], 2 + (int)random_below(&r, 3),
+                   1 + (int)random_below(&r, 24));
+        draw(&b, &r);
+        if (random_below(&r, 2)) b.grid = 1000;
+        b.machine.network.hop_latency += 1e-9 * (double)random_below(&r, 9);
+        replay(&b, &flit_event, seed, burst);
+        b.machine.noise.background_load = 1e-9;
+        replay(&b, &flit_event, seed, flit);
+        must_be_equal(&b, seed, burst, flit, "single flits");
         arena_destroy(b.arena);
     }
 }
@@ -319,6 +360,7 @@ int main(void)
         cmocka_unit_test(several_channels_are_close),
         cmocka_unit_test(ring_deadlock_names_the_cycle),
         cmocka_unit_test(trains_equal_single_flits),
+        cmocka_unit_test(bursts_equal_single_flits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
