@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/large_pages.h"
 #include "base/progress.h"
 #include "plan/plan.h"
 #include "run/run.h"
@@ -43,7 +44,10 @@ static int measure_apart(int nrank, const char *level)
 {
     fflush(stdout);
     pid_t pid = fork();
-    if (pid == 0) _exit(measure(nrank, level));
+    if (pid == 0) {
+        large_pages_for_heap(); /* as the program does */
+        _exit(measure(nrank, level));
+    }
     int status = 1;
     waitpid(pid, &status, 0);
     return status != 0;

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "../tests/support/many_ranks.h"
+#include "base/large_pages.h"
 #include "base/progress.h"
 #include "dynamics/system.h"
 #include "kernel/dynamics_program.h"
@@ -122,6 +123,7 @@ int main(int argc, char **argv)
     static const int standard[] = {16, 128, 1024, 4096};
     const int n = argc > 1 ? argc - 1 : 4;
     bool good = true;
+    large_pages_for_heap(); /* as the program does */
     printf("%8s %12s %12s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms",
            "watched/bare", "same, direct", "loggp/watched", "link/watched");
     for (int i = 0; i < n; i++) good = measure(argc > 1 ? atoi(argv[i + 1]) : standard[i]) && good;

@@ -1,6 +1,6 @@
 /* cpu_seconds.c - user and system seconds of one command and its children, as the system accounts
- * for them, on stream 3. A shell's `time` adds what it takes to make a copy of the shell first, which
- * shows beside a small run.
+ * for them, on stream 3. A shell's `time` adds what it takes to make a copy of the shell first,
+ * which shows beside a small run.
  *
  *   cpu_seconds LIMIT COMMAND [ARGUMENT...] 3>FILE      LIMIT: of processor time [s] */
 #include <spawn.h>

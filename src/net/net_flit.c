@@ -1,7 +1,8 @@
 /* net_flit.c - level flit: wormhole switching, by trains of flits or flit by flit.
  *
  * Trains need one event for each packet and resource, the other way one for each flit that crosses
- * one, or for those that nobody can meet within a hop latency. With one virtual channel both describe the same router. */
+ * one, or for those that nobody can meet within a hop latency. With one virtual channel both
+ * describe the same router. */
 #include "net/net_flit.h"
 
 /* With one channel nobody shares a link while a worm holds it, and trains are exact; with several
