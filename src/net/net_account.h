@@ -23,13 +23,19 @@ static inline struct link_load *net_load(struct net *n, size_t at)
 /* net_job: the job that m belongs to. */
 static inline int net_job(const struct net_message *m) { return (int)(m->id >> NET_ID_JOB); }
 
+/* net_account_of: the number in n->load of a resource's account for a job. */
+static inline size_t net_account_of(const struct net *n, int resource, int job)
+{
+    return (size_t)job * (size_t)n->nresource + (size_t)resource;
+}
+
 /* net_account: resource was used for `busy` by a message of `job` with `bytes` of payload that
  * waited `queue` for it (or by a part of one: messages 0). */
 static inline void net_account(struct net *n, int resource, int job, int messages, int64_t bytes,
                                sim_ps busy, sim_ps queue)
 {
     if (!n->load) return;
-    struct link_load *l = net_load(n, (size_t)job * (size_t)n->nresource + (size_t)resource);
+    struct link_load *l = net_load(n, net_account_of(n, resource, job));
     l->messages += messages;
     l->bytes += bytes;
     l->busy_ps += busy;
@@ -48,7 +54,7 @@ static inline void net_account_packet(struct net *n, int resource, const struct 
 static inline void net_account_early(const struct net *n, int resource, int job)
 {
     if (!n->load) return;
-    const struct link_load *l = &n->load[(size_t)job * (size_t)n->nresource + (size_t)resource];
+    const struct link_load *l = &n->load[net_account_of(n, resource, job)];
     __builtin_prefetch(&l->messages, 1);
     __builtin_prefetch(&l->queue_ps, 1);
 }

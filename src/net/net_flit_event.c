@@ -258,34 +258,47 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
     worm_return(g, w);
 }
 
-/* The next flit of l crosses its resource now: credit to the resource before, arrival at the end of
- * this one. */
+/* How long a flit that is no head is under way from one resource to the next: the setup part of the
+ * hop latency is the head's alone; front_asks adds it. */
+static inline sim_ps trip(const struct fabric *f) { return f->net->tau - f->net->setup; }
+
+/* The next flit of l crosses its resource at `at`. Its slot before keeps the departure, which is
+ * the credit of the flit a buffer's size later, that behind the arrival. */
+static inline void flit_crosses(struct flits *g, struct leg *l, sim_ps at)
+{
+    struct fabric *f = &g->fabric;
+    const sim_ps flit = pass_of(l)->flit;
+    l->sent++;
+    f->resource[l->resource].free = at + flit;
+    if (l->hop > 0) {
+        struct vc *v = vc_before(g, l);
+        *slot_of(g, v, v->out++) = at;
+        g->crossing[l[-1].resource].passed = at + flit;
+    }
+    if (!is_last(l)) {
+        struct vc *v = &g->crossing[l->resource].vc[l->channel];
+        *slot_of(g, v, v->in++) = at + trip(f);
+    }
+}
+
+/* It crosses now: the resource before is told of the credit, the next one of the arrival. */
 static void flit_send(struct flits *g, struct leg *l, sim_ps now)
 {
     struct fabric *f = &g->fabric;
-    const struct pass *s = pass_of(l);
-    f->resource[l->resource].free = now + s->flit;
-    bool head = l->sent++ == 0, tail = l->sent == l->worm->flits, last = is_last(l);
+    const bool head = l->sent == 0;
+    flit_crosses(g, l, now);
     if (head) l->first = now;
     if (head && l->hop == 0 && l->worm->index == 0) l->worm->flight->m->injected = now;
-    /* The slot keeps the departure: the credit of the flit a buffer's size later. */
-    if (l->hop > 0) {
-        struct vc *v = vc_before(g, l);
-        *slot_of(g, v, v->out++) = now;
-        g->crossing[l[-1].resource].passed = now + s->flit;
+    if (l->hop > 0)
         packet_wake(f, l[-1].resource,
                     later(now + f->net->credit, f->resource[l[-1].resource].free));
-    }
-    if (!last) {
+    if (!is_last(l)) {
         struct vc *v = &g->crossing[l->resource].vc[l->channel];
-        /* The setup part of the hop latency is the head's alone; front_asks adds it. */
-        sim_ps there = now + f->net->tau - f->net->setup;
-        *slot_of(g, v, v->in++) = there;
         if (head && v->front == l) front_asks(g, v);
         if (l[1].channel >= 0)
-            packet_wake(f, l[1].resource, later(there, f->resource[l[1].resource].free));
+            packet_wake(f, l[1].resource, later(now + trip(f), f->resource[l[1].resource].free));
     }
-    if (tail) tail_sent(g, l, now);
+    if (l->sent == l->worm->flits) tail_sent(g, l, now);
 }
 
 /* ---- bursts ---- */
@@ -298,41 +311,30 @@ static sim_ps undisturbed(const struct flits *g, const struct leg *l, sim_ps now
 {
     const struct fabric *f = &g->fabric;
     if (l->hop == 0) return SIM_NEVER;
-    const int input = l[-1].resource;
-    sim_ps until = ps_later(now, f->net->tau - f->net->setup);
-    if (g->queued[g->crossing[input].router] > 0)
-        until = sooner(until, now + f->fastest + f->net->setup);
-    for (int i = 0; i < f->nchannel; i++) {
-        struct vc *v = &g->crossing[input].vc[i];
-        if (i != l[-1].channel && v->in > v->out) until = sooner(until, *slot_of(g, v, v->out));
-    }
+    const struct crossing *input = &g->crossing[l[-1].resource];
+    const struct vc *own = &input->vc[l[-1].channel];
     /* A node looks how much room its channels have, and may not see it early. */
-    const struct vc *v = &g->crossing[input].vc[l[-1].channel];
-    const int64_t come = (f->net->tau - f->net->setup) / f->fastest + 2;
-    if (l->hop == 1 && v->in - v->out + come >= f->buffer) return now;
+    if (l->hop == 1 && own->in - own->out + trip(f) / f->fastest + 2 >= f->buffer) return now;
+    sim_ps until = ps_later(now, trip(f));
+    if (g->queued[input->router] > 0) until = sooner(until, now + f->fastest + f->net->setup);
+    for (int i = 0; i < f->nchannel; i++) {
+        struct vc *v = &input->vc[i];
+        if (v != own && v->in > v->out) until = sooner(until, *slot_of(g, v, v->out));
+    }
     return until;
 }
 
-/* After a flit of l over resource r, whose only owner it is while no head asks: those after it, but
- * for the tail, that cross before anything can act on them, in the same event. That they go is
- * known to both ends at once, when they go is written beside it. */
-static void burst(struct flits *g, struct leg *l, int r, sim_ps now)
+/* After a flit of l over its resource, whose only owner it is while no head asks: those after it,
+ * but for the tail, that cross before anything can act on them, in the same event. That they go is
+ * known to both ends at once; when they go is written beside it. */
+static void burst(struct flits *g, struct leg *l, sim_ps now)
 {
-    const struct fabric *f = &g->fabric;
-    struct resource *o = &f->resource[r];
-    const sim_ps until = undisturbed(g, l, now), flit = pass_of(l)->flit;
-    struct vc *before = l->hop > 0 ? vc_before(g, l) : NULL,
-              *behind = is_last(l) ? NULL : &g->crossing[r].vc[l->channel];
+    const sim_ps until = undisturbed(g, l, now);
+    const struct resource *o = &g->fabric.resource[l->resource];
     while (l->sent + 1 < l->worm->flits) {
         const sim_ps at = flit_ready(g, l, o->free);
         if (at >= until) return;
-        l->sent++;
-        o->free = at + flit;
-        if (before) {
-            *slot_of(g, before, before->out++) = at;
-            g->crossing[l[-1].resource].passed = at + flit;
-        }
-        if (behind) *slot_of(g, behind, behind->in++) = at + f->net->tau - f->net->setup;
+        flit_crosses(g, l, at);
     }
 }
 
@@ -365,7 +367,7 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
     x->next = (go->channel + 1) % n;
     bool more = go->sent + 1 < go->worm->flits;
     flit_send(g, go, now);
-    if (more && owners == 1 && !waits && g->bursts && !g->fabric.debt) burst(g, go, r, now);
+    if (more && owners == 1 && !waits && g->bursts && !g->fabric.debt) burst(g, go, now);
     return more || waits || again != SIM_NEVER ? g->fabric.resource[r].free : SIM_NEVER;
 }
 

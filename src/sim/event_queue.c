@@ -178,7 +178,7 @@ static inline void move_to(struct event_queue *q, int level, int slot)
 {
     q->window = window_at(q, level, slot);
 }
-_Static_assert(WHEEL_LEVELS *WHEEL_BITS < 64, "the shift by a level and its bits is defined");
+_Static_assert(WHEEL_LEVELS * WHEEL_BITS < 64, "the shift by a level and its bits is defined");
 
 /* Spread a bucket over the levels below, from the first window that it covers. */
 static void wheel_spread(struct event_queue *q, int level, int slot)
@@ -300,7 +300,9 @@ static void run_begin(struct event_queue *q, int slot)
     }
     q->run_at = 0;
     q->run_count = n;
-    for (uint32_t i = 0; i < chunks; i++) chunk_give(q, q->chunk[i]);
+    /* The chunks go back as they are chained. */
+    chain.last->next = q->pool;
+    q->pool = chain.first;
     warm_up_next(q, slot);
 }
 

@@ -64,23 +64,15 @@ static inline void warm_up(const struct world *w)
 {
     const struct vp *far = ready_ahead(w, 8), *middle = ready_ahead(w, 5),
                     *near = ready_ahead(w, 3);
-    if (far) {
-        __builtin_prefetch(far);
-        __builtin_prefetch((const char *)far + 64);
-        __builtin_prefetch((const char *)far + 128);
-    }
+    if (far) arrivals_warm_receiver(far);
     if (middle) arrivals_warm_fiber(middle);
     if (near) {
         fiber_prefetch_stack(near->fiber);
         if (near->waiting) __builtin_prefetch(near->waiting);
     }
     const struct vp *next = ready_ahead(w, 1);
-    if (next && next->waiting && next->waiting->active == REQUEST_MATCHED) {
-        const char *m = next->waiting->detail;
-        __builtin_prefetch(m);
-        __builtin_prefetch(m + 64);
-        __builtin_prefetch(m + 128);
-    }
+    if (next && next->waiting && next->waiting->active == REQUEST_MATCHED)
+        arrivals_warm_message(next->waiting->detail);
 }
 
 /* First come, first served, as vp_wake has put them. */
