@@ -16,10 +16,10 @@
 
 static inline int below(struct random *r, int n) { return (int)random_below(r, (uint64_t)n); }
 
-/* A square torus with a node at each router. */
-static inline struct topology_spec torus_of(int side)
+/* A square torus or mesh with a node at each router. */
+static inline struct topology_spec square(enum topology_family family, int side)
 {
-    return (struct topology_spec){.family = TOPOLOGY_TORUS,
+    return (struct topology_spec){.family = family,
                                   .ndim = 2,
                                   .dims = {side, side},
                                   .nodes_per_router = 1,

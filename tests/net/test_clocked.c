@@ -71,7 +71,7 @@ static void looks_that_are_not_needed_any_more_change_no_order(void **state)
     (void)state;
     enum { MESSAGES = 2300, SIDE = 8, CYCLES = 170 };
     static const int seed[] = {5, 10, 986, 1165, 1190};
-    const struct topology_spec s = torus_of(SIDE);
+    const struct topology_spec s = square(TOPOLOGY_TORUS, SIDE);
     struct machine_spec m = netcheck_machine(&s, 4, 16, 0, 3);
     m.network.hop_latency = 7e-9;
     m.network.routing_latency = 1e-9;
@@ -129,11 +129,7 @@ static bool far_list_agrees(const struct machine_spec *m, int n, sim_ps first, s
 static void late_cycles_are_played_by_events(void **state)
 {
     (void)state;
-    const struct topology_spec s = {.family = TOPOLOGY_MESH,
-                                    .ndim = 2,
-                                    .dims = {3, 3},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1};
+    const struct topology_spec s = square(TOPOLOGY_MESH, 3);
     struct machine_spec m = netcheck_machine(&s, 2, 16, 0, 3);
     m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
     const sim_ps cycle = 1000, last = (sim_ps)1 << 30;

@@ -246,13 +246,9 @@ static void places_are_found_without_a_look_by_chance(void **state)
 static void a_head_that_did_not_ask_has_no_second_look(void **state)
 {
     (void)state;
-    const struct topology_spec s = {.family = TOPOLOGY_TORUS,
-                                    .ndim = 2,
-                                    .dims = {3, 2},
-                                    .nodes_per_router = 1,
-                                    .processors_per_node = 1,
-                                    .tie = TIE_RANDOM,
-                                    .dim_bandwidth = {0, 5e9}};
+    struct topology_spec s = square(TOPOLOGY_TORUS, 3);
+    s.dims[1] = 2;
+    s.dim_bandwidth[1] = 5e9;
     struct machine_spec m = netcheck_machine(&s, 4, 64, 4, 3);
     m.network.routing = ROUTING_BOOKSIM_MIN_ADAPT;
     m.network.level = LEVEL_PACKET;
@@ -266,7 +262,7 @@ static void who_lost_does_not_try_again_in_the_same_instant(void **state)
 {
     (void)state;
     static const int trial[] = {383, 518, 686};
-    const struct topology_spec s = torus_of(2);
+    const struct topology_spec s = square(TOPOLOGY_TORUS, 2);
     struct machine_spec m = netcheck_machine(&s, 4, 8, 0, 3);
     m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
     m.network.level = LEVEL_PACKET;
@@ -280,7 +276,7 @@ static void who_lost_does_not_try_again_in_the_same_instant(void **state)
 static void who_lost_does_not_try_again_within_a_flit(void **state)
 {
     (void)state;
-    const struct topology_spec s = torus_of(2);
+    const struct topology_spec s = square(TOPOLOGY_TORUS, 2);
     struct machine_spec m = netcheck_machine(&s, 4, 8, 0, 3);
     m.network.hop_latency = 4e-9;
     m.network.routing = ROUTING_BOOKSIM_DIM_ORDER;
