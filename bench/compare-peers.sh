@@ -24,9 +24,9 @@ smpi_flags=(--cfg=smpi/simulate-computation:no --cfg=smpi/privatization:no --cfg
     --cfg=contexts/stack-size:64 --cfg=network/crosstraffic:no --log=root.thres:error)
 have() { command -v "$1" >/dev/null; }
 ! have smpicc || smpicc -O2 "$here/mpi/play-schedule.c" -o play-schedule
+${CC:-cc} -O2 -o cpu_seconds "$here/cpu_seconds.c"
 
 # cpu COMMAND...: user and system seconds of the whole process; "-" when it fails or takes too long.
-${CC:-cc} -O2 -o cpu_seconds "$here/cpu_seconds.c"
 cpu() {
     if ./cpu_seconds "$limit" "$@" 3>took >said 2>noise; then cat took; else echo -; fi
 }

@@ -2,7 +2,9 @@
  * for them, on stream 3. A shell's `time` adds what it takes to make a copy of the shell first,
  * which shows beside a small run.
  *
- *   cpu_seconds LIMIT COMMAND [ARGUMENT...] 3>FILE      LIMIT: of processor time [s] */
+ *   cpu_seconds LIMIT COMMAND [ARGUMENT...] 3>FILE
+ *
+ * LIMIT: of processor time [s], or unlimited. */
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +17,7 @@ int main(int argc, char **argv)
 {
     if (argc < 3) return 64;
     const rlim_t limit = strtoul(argv[1], NULL, 10);
-    setrlimit(RLIMIT_CPU, &(struct rlimit){limit, limit});
+    if (limit > 0) setrlimit(RLIMIT_CPU, &(struct rlimit){limit, limit});
     pid_t child;
     int status;
     struct rusage used;
