@@ -14,6 +14,7 @@
 
 #include "base/arena.h"
 #include "base/check.h"
+#include "base/large_pages.h"
 #include "net/traffic.h"
 #include "study/netcheck.h"
 #include "study/netcheck_case.h"
@@ -245,6 +246,7 @@ int main(int argc, char **argv)
         void (*bench)(const bool *wanted);
     } list[] = {{"doubling", bench_doubling}, {"load", bench_loads}, {"routed", bench_routed}};
     enum { LISTS = sizeof list / sizeof *list };
+    large_pages_for_heap(); /* as the program does */
     bool wanted[LEVELS] = {false}, listed[LISTS] = {false}, levels = false, lists = false;
     for (int i = 1; i < argc; i++) {
         bool known = false;

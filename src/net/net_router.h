@@ -11,8 +11,8 @@
 #include "net/net_packet.h"
 #include "net/net_way.h"
 
-enum { ROUTER_AHEAD = 16 }; /* most flits that a router sends ahead of time */
-enum { ROUTER_LINE = 64 }; /* bytes of a cache line: records that a step needs one line of */
+/* Most flits that a router sends ahead of time; bytes of a cache line, which most steps need. */
+enum { ROUTER_AHEAD = 16, ROUTER_LINE = 64 };
 
 /* A packet in the network. What a step at a router asks of it lies in its first line. */
 struct worm {
@@ -40,8 +40,7 @@ enum lane_state {
     LANE_SENDING  /* it has one */
 };
 
-/* A flit in a FIFO: when it comes, and when it goes, whose credit the flit a buffer's size later
- * needs. Both may lie ahead (router_send). */
+/* A flit in a FIFO: when it comes, and when it goes and a credit with it. Both may lie ahead. */
 struct stay {
     sim_ps come, go;
 };
@@ -63,7 +62,7 @@ struct lane {
     struct port *of;                /* port[port] */
     struct leg *front;              /* of the worms in the FIFO */
     sim_ps due;                     /* see lane_state */
-    struct lane *busy, **busy_link; /* the router's lanes that have a front */
+    struct lane *busy, **busy_link; /* the router's lanes whose front has come */
     uint64_t ways;                  /* the outputs of all its ways on; see router_bit */
     int32_t way;                    /* its first or only way on: port, */
     int16_t first, count;           /* channels */
@@ -71,7 +70,6 @@ struct lane {
     uint8_t state;  /* enum lane_state */
     bool starved;   /* somebody upstream waits for a flit of it to be sent */
     uint32_t input; /* its number among the FIFOs of the router at its end, */
-
     uint32_t output; /* among the channels of the router at its beginning: turns go by these */
     int32_t port;
     struct leg *owner;           /* who sends over it, from its head to its tail */
@@ -108,6 +106,8 @@ enum { ROUTER_POSTED = 3, ROUTER_LANE_AGAIN = NET_LANE_ARBITRATE + 1 /* a second
 
 struct router {
     struct lane *busy;
+    struct coming *coming; /* (room) those of `next` .. `end` - 1, by due (net_router_front.h) */
+    int32_t next, end, room;
     sim_ps wake;                  /* 1 + its next event, or 0 */
     sim_ps retry;                 /* until when some lane has to wait after an allocation */
     bool second;                  /* its next look was asked for in its own instant */

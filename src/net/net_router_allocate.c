@@ -6,8 +6,7 @@
  * only after the first iteration. BookSim's router makes one iteration, whatever its option
  * alloc_iters says. A head bids for the switch in the same instant in which it asks for a channel,
  * and its turn is wasted if it gets none (speculation). */
-#include "net/net_router_gather.h"
-#include "net/net_router_lane.h"
+#include "net/net_router_front.h"
 
 /* A FIFO's request for a channel, and its bid for the way through the switch. */
 struct ask {
@@ -301,6 +300,14 @@ static bool winner_sends(struct routers *g, const struct bid *b, sim_ps now)
 
 /* ---- a look ---- */
 
+/* v is one more beside the first n of g->active, which are in the order of the router's FIFOs: who
+ * goes first counts now and then. */
+static inline void active_add(struct routers *g, int n, struct lane *v)
+{
+    for (; n > 0 && g->active[n - 1]->input > v->input; n--) g->active[n] = g->active[n - 1];
+    g->active[n] = v;
+}
+
 /* The lanes of router r that can do something now into g->active; returns how many. *again: when
  * others may. Loads are looked at by all of an instant together, before anything moves. */
 static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
@@ -309,10 +316,8 @@ static int active_find(struct routers *g, int r, sim_ps now, sim_ps *again)
     for (struct lane *v = g->router[r].busy; v; v = v->busy) {
         if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
         const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
-        if (at > now || v->retry > now)
-            *again = router_sooner(*again, router_later(at, v->retry));
-        else
-            g->active[n++] = v;
+        if (at > now || v->retry > now) *again = router_sooner(*again, router_later(at, v->retry));
+        else active_add(g, n++, v);
     }
     return n;
 }
@@ -373,21 +378,22 @@ static sim_ps allocate_together(struct routers *g, int n, sim_ps now)
     return again;
 }
 
-/* The only lane of a router that has a front. */
+/* v, which is in nobody's way, goes if its own is clear. */
+static inline bool passes_quickly(struct routers *g, struct lane *v, sim_ps now)
+{
+    return g->quick && v->state == LANE_ASKING && v->noption <= 1 && router_quick(g, v, now);
+}
+
+/* The only lane of a router whose front has come. */
 static sim_ps look_single(struct routers *g, struct lane *v, sim_ps now)
 {
     if (v->state == LANE_ROUTING && v->due <= now) router_route(g, v);
     const sim_ps at = v->state == LANE_SENDING ? sends_from(g, v, now) : v->due;
     if (at > now || v->retry > now) return router_later(at, v->retry);
+    if (passes_quickly(g, v, now)) return SIM_NEVER;
     if (v->state != LANE_ASKING || g->single) return router_pass(g, v, now);
     g->active[0] = v;
     return allocate_together(g, 1, now);
-}
-
-/* v, which is in nobody's way, goes if its own is clear. */
-static inline bool passes_quickly(struct routers *g, struct lane *v, sim_ps now)
-{
-    return g->quick && v->state == LANE_ASKING && v->noption <= 1 && router_quick(g, v, now);
 }
 
 static sim_ps look_several(struct routers *g, int r, sim_ps now)
@@ -439,9 +445,10 @@ void router_look_at(struct routers *g, int r, bool second, sim_ps now)
     if (o->second && !second) return;
     o->wake = 0;
     g->now = now;
-    if (!o->busy) return;
-    if (o->retry > now || !g->quick || !look_quickly(g, o->busy, now, &again))
+    const sim_ps next = router_has_come(o, now);
+    if (o->busy && (o->retry > now || !g->quick || !look_quickly(g, o->busy, now, &again)))
         again = look_slowly(g, r, now);
+    again = router_sooner(again, next);
     if (again != SIM_NEVER) router_wake(g, r, again);
 }
 

@@ -9,8 +9,7 @@
  *
  * What lies beyond the wheel, or between the instants of its clock, waits as an event of its own.
  */
-#include "net/net_router_gather.h"
-#include "net/net_router_lane.h"
+#include "net/net_router_front.h"
 
 enum { MOST = 1 << 16 };
 
@@ -71,7 +70,8 @@ static void look_routers(struct routers *g, struct gather_slot *s, sim_ps now)
                 const int i = __builtin_ctzll(word);
                 word &= word - 1;
                 if (word) {
-                    const struct lane *v = first[__builtin_ctzll(word)].busy;
+                    const struct router *o = &first[__builtin_ctzll(word)];
+                    const struct lane *v = o->next < o->end ? o->coming[o->next].lane : o->busy;
                     if (v) __builtin_prefetch(&v->of);
                 }
                 router_look_at(g, w * GATHER_WORD + i, false, now);

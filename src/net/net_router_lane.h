@@ -25,6 +25,9 @@ sim_ps router_pass(struct routers *g, struct lane *v, sim_ps now);
  * nothing that matters and returns false. Nothing of v needs another look then. Where g->quick. */
 bool router_quick(struct routers *g, struct lane *v, sim_ps now);
 
+/* router_coming_room: room for one more of o's coming lanes. */
+void router_coming_room(struct routers *g, struct router *o);
+
 /* router_leg: lane v of port p becomes w's: a leg at the end of its FIFO. */
 struct leg *router_leg(struct routers *g, struct worm *w, struct lane *v);
 void router_leg_return(struct routers *g, struct leg *l);

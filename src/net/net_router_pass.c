@@ -24,7 +24,9 @@ static void upstream_wake(struct routers *g, int p, sim_ps at)
  * later. */
 static bool somebody_asks(const struct routers *g, int r, sim_ps at)
 {
-    const struct lane *w = g->router[r].busy;
+    const struct router *o = &g->router[r];
+    const struct lane *w = o->busy;
+    if (o->next < o->end && (!g->spares || o->coming[o->next].due <= at)) return true;
     if (!g->spares) return w != NULL;
     while (w && (w->state == LANE_SENDING || w->due > at)) w = w->busy;
     return w != NULL;
@@ -95,8 +97,12 @@ static inline sim_ps undisputed(const struct routers *g, const struct lane *v,
     sim_ps until = now + g->tau;
     /* A rule that looks at the room in a lane must not see what is yet to come. */
     if (g->fits) return now;
-    for (const struct lane *w = g->router[v->of->to].busy; w && until > now; w = w->busy)
+    const struct router *o = &g->router[v->of->to];
+    for (const struct lane *w = o->busy; w && until > now; w = w->busy)
         if (w != v) until = router_sooner(until, competes(g, v, w, out, now));
+    /* None competes before it is due. */
+    for (int32_t k = o->next; k < o->end && o->coming[k].due < until; k++)
+        until = router_sooner(until, competes(g, v, o->coming[k].lane, out, now));
     return until;
 }
 

@@ -1,6 +1,6 @@
 /* net_router_pool.c - records of net_router.h: lanes where they are first used, legs and worms out
  * of pools, so that a steady load allocates nothing. */
-#include "net/net_router_lane.h"
+#include "net/net_router_front.h"
 
 struct lane *router_lanes_make(struct routers *g, int p)
 {
@@ -49,6 +49,20 @@ void router_leg_return(struct routers *g, struct leg *l)
 {
     l->behind = g->free_leg;
     g->free_leg = l;
+}
+
+/* Places from which all have come are used anew, if they are half of all. */
+void router_coming_room(struct routers *g, struct router *o)
+{
+    struct coming *to = o->coming;
+    if (o->next <= o->room / 2) {
+        o->room = o->room ? 2 * o->room : 8;
+        to = TAKE(g->fabric.net->arena, o->room, struct coming);
+    }
+    for (int32_t k = o->next; k < o->end; k++) to[k - o->next] = o->coming[k];
+    o->coming = to;
+    o->end -= o->next;
+    o->next = 0;
 }
 
 /* Each packet of a message chooses for itself; the first one as the message would. */

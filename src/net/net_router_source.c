@@ -266,6 +266,7 @@ static bool router_deadlock(const struct net *n, char *text, int size)
 {
     const struct routers *g = n->state;
     const struct lane *v = NULL;
+    /* Nothing is under way any more. */
     for (int r = 0; r < n->topology->nrouter && !v; r++) v = g->router[r].busy;
     struct arena_mark mark = arena_mark(n->arena);
     int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int),

@@ -161,7 +161,7 @@ static void same(const struct traffic_result *x, const struct traffic_result *y,
 
 /* All times, in one number: what both ways of playing have in common, as how a lane moves on that
  * is alone at its router, cannot be seen by comparing them. */
-static const uint64_t TIMES = 0x24cb8e547d69c7fa;
+static const uint64_t TIMES = 0xebb56516815ececd;
 
 static uint64_t times_mix(uint64_t digest, const struct traffic_result *x, int n)
 {
