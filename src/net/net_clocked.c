@@ -5,54 +5,68 @@
 #include "net/net_clocked.h"
 
 #include "base/digest.h"
-#include "net/net_clocked_step.h"
+#include "net/net_clocked_allocate.h"
 
 enum {
     MOST_ROUTERS = 8192,   /* of a cycle all words are looked through */
+    MOST_NEAR = 16,        /* flits of a hop latency within which few heads are under way */
     MOST_WHEEL = 1 << 16,  /* cycles from a look to what it may post */
+    LEAST_CYCLE = 10,      /* [ps] below it most cycles are empty */
     MOST_LAST = 1 << 30,   /* no cycle from this one on: sums of a few times stay below 2^31 */
     MOST_BYTES = 256 << 20 /* of records; messages take eight more each */
 };
 
 /* ---- what can be played ----
  *
- * A network whose times are all multiples of a flit's, with links of one rate, and rules of one or
- * two ways on; of lists those whose messages are a packet each and start on a cycle. */
+ * A network with links of one rate, and rules of one or two ways on, whose times have a common
+ * measure: that is the cycle. Of lists those whose messages are a packet each and start on one. */
 
-/* Durations that are whole cycles, and short. */
-static bool is_even(sim_ps duration, sim_ps unit)
+/* The cycle so far, and the longest of the times that it measures. */
+struct measure {
+    sim_ps cycle, longest;
+};
+
+static void measure_with(struct measure *m, sim_ps duration)
 {
-    return duration % unit == 0 && duration / unit < MOST_WHEEL;
+    if (duration > m->longest) m->longest = duration;
+    /* Euclid. */
+    while (duration > 0) {
+        const sim_ps rest = m->cycle % duration;
+        m->cycle = duration;
+        duration = rest;
+    }
 }
 
-/* Whether all times of the network are, and nobody watches or loads it besides. A credit and the
- * way of a head to its next look take a cycle at least, so that no flit crosses two routers in one
+/* The cycle of the network, if nobody watches or loads it besides; 0: it has none. A credit and the
+ * way of a head to its next look take one at least, so that no flit crosses two routers in one
  * cycle. */
-static bool network_is_even(const struct net *n, const struct routers *g)
+static sim_ps cycle_find(const struct net *n, const struct routers *g)
 {
-    const sim_ps unit = n->link.flit;
-    if (!g->even || g->fits || !g->few || n->load || n->path || n->others) return false;
-    if (n->topology->nrouter > MOST_ROUTERS || n->nnode > MOST_ROUTERS) return false;
-    if (!is_even(n->tau, unit) || !is_even(n->credit, unit) || !is_even(n->setup, unit) ||
-        !is_even(n->allocation, unit) || n->credit < unit || n->tau - n->setup < unit)
-        return false;
-    for (int i = 0; i < n->nport; i++)
-        if (n->port[i].rate.flit != unit || !is_even(n->port[i].gap, unit)) return false;
-    for (int l = 0; n->wire && l < n->nlink; l++)
-        if (!is_even(n->wire[l], unit)) return false;
-    return n->port_private && n->in_flight == 0;
+    struct measure m = {n->link.flit, n->link.flit};
+    if (!g->even || g->fits || !g->few || n->load || n->path || n->others) return 0;
+    if (n->topology->nrouter > MOST_ROUTERS || n->nnode > MOST_ROUTERS) return 0;
+    if (n->credit <= 0 || n->tau - n->setup <= 0) return 0;
+    measure_with(&m, n->tau);
+    measure_with(&m, n->credit);
+    measure_with(&m, n->setup);
+    measure_with(&m, n->allocation);
+    for (int i = 0; i < n->nport; i++) {
+        if (n->port[i].rate.flit != n->link.flit) return 0;
+        measure_with(&m, n->port[i].gap);
+    }
+    for (int l = 0; n->wire && l < n->nlink; l++) measure_with(&m, n->wire[l]);
+    if (!n->port_private || n->in_flight != 0) return 0;
+    const bool one = m.cycle == n->link.flit;
+    return (one || m.cycle >= LEAST_CYCLE) && m.longest / m.cycle < MOST_WHEEL ? m.cycle : 0;
 }
 
 /* In which cycle each message starts, and how long the longest and the shortest are. False: one
- * starts between two, or is more than a packet, or the last one may end too late: even if all of
- * them had to go one after the other, hop by hop. That spares a run in vain; what decides is the
- * clock in play. */
-static bool list_is_even(struct clocked *g, int32_t gap)
+ * starts between two, or too late, or is more than a packet. */
+static bool list_is_even(struct clocked *g)
 {
     const struct clocked_list *q = g->list;
     const double per_unit = 1.0 / (double)g->unit;
-    const int64_t hop = g->tau + g->credit + g->longest_wire + g->pause + gap + 4;
-    int64_t flits = 0, all = 0, bytes = -1;
+    int64_t flits = 0, bytes = -1;
     g->longest = 1;
     g->shortest = MOST_WHEEL;
     /* Many messages have one size, and a division takes long. */
@@ -70,8 +84,6 @@ static bool list_is_even(struct clocked *g, int32_t gap)
             g->longest = clocked_later(g->longest, (int32_t)flits);
             g->shortest = clocked_sooner(g->shortest, (int32_t)flits);
         }
-        all += (flits + hop) * (g->routing->max_hops + 2);
-        if (k + all >= MOST_LAST) return false;
     }
     return true;
 }
@@ -86,17 +98,19 @@ static bool are_few(const struct clocked *g, int nport, size_t words)
 }
 
 /* How many inputs each router has, and all of them together; false: one has too many lanes. */
-static bool inputs_count(const struct clocked *g, const struct routers *from, int *input, int *all)
+static bool inputs_count(struct clocked *g, const struct routers *from, int *input, int *all)
 {
     const int nchannel = (int)g->nchannel;
     *all = 0;
     for (int i = 0; i < g->net->nresource; i++) {
         const struct port *p = &from->port[i];
         if (p->to >= 0 && (int)p->in >= input[p->to]) input[p->to] = (int)p->in + 1;
-        if (((int)p->out + 1) * nchannel > INT8_MAX || p->out >= CLOCKED_WORD) return false;
+        if (((int)p->out + 1) * nchannel > CLOCKED_LANES || p->out >= CLOCKED_WORD) return false;
     }
     for (int r = 0; r < g->nrouter; r++) {
-        if (input[r] * nchannel > CLOCKED_WORD) return false;
+        if (input[r] * nchannel > CLOCKED_LANES) return false;
+        if (input[r] * nchannel > g->sets * CLOCKED_WORD)
+            g->sets = (input[r] * nchannel - 1) / CLOCKED_WORD + 1;
         *all += input[r];
     }
     return *all + g->nnode <= UINT16_MAX && are_few(g, *all + g->nnode, 0);
@@ -116,10 +130,15 @@ static bool ports_make(struct clocked *g, const struct routers *from)
     for (int i = 0; i < g->nport; i++) g->port[i].lane = g->lane + i * (int)g->nchannel;
     for (int i = 0; i < g->nport * (int)g->nchannel; i++)
         g->lane[i].port = (uint16_t)(i / (int)g->nchannel);
+    struct clocked_coming *coming =
+        TAKE(a, size_product((size_t)sink, g->nchannel), struct clocked_coming);
     for (int r = 0; r < g->nrouter; next += input[r++])
-        g->router[r] = (struct clocked_router){
-            .lane = g->port[next].lane, .port = &g->port[next], .tried = -1, .wake = CLOCKED_NEVER};
-    for (int i = 0; i < CLOCKED_WORD; i++) {
+        g->router[r] = (struct clocked_router){.lane = g->port[next].lane,
+                                               .port = &g->port[next],
+                                               .coming = coming + next * (int)g->nchannel,
+                                               .room = (uint16_t)(input[r] * (int)g->nchannel),
+                                               .wake = CLOCKED_NEVER};
+    for (int i = 0; i < CLOCKED_LANES; i++) {
         g->entry[i] = (uint8_t)(i / (int)g->nchannel);
         g->channel[i] = (uint8_t)(i % (int)g->nchannel);
         g->after[i] = clocked_next_channel(g, g->channel[i]);
@@ -157,18 +176,19 @@ static void ports_fill(struct clocked *g, const struct routers *from)
 
 /* What the levels' records say, in cycles. They themselves are only read: events may still have to
  * play the list. */
-static struct clocked *clocked_make(struct net *n, const struct clocked_list *q,
+static struct clocked *clocked_make(struct net *n, sim_ps unit, const struct clocked_list *q,
                                     struct clocked_result *r)
 {
     struct routers *from = n->state;
-    const sim_ps unit = n->link.flit;
     struct clocked *g = TAKE(n->arena, 1, struct clocked);
     *g = (struct clocked){.net = n, .list = q, .result = r, .unit = unit, .routing = n->routing};
+    g->flit = (int32_t)(n->link.flit / unit);
     g->tau = (int32_t)(n->tau / unit);
     g->credit = (int32_t)(n->credit / unit);
     g->setup = (int32_t)(n->setup / unit);
     g->reach = g->tau - g->setup;
     g->pause = (int32_t)(n->allocation / unit);
+    g->queues = !g->whole || g->tau > MOST_NEAR * g->flit;
     for (int l = 0; n->wire && l < n->nlink; l++)
         g->longest_wire = clocked_later(g->longest_wire, (int32_t)(n->wire[l] / unit));
     g->buffer = (int32_t)from->buffer;
@@ -198,14 +218,15 @@ static int32_t places_needed(const struct clocked *g)
     return (g->buffer + g->longest) / clocked_later(g->shortest, 1) + 4;
 }
 
-/* The wheel and the lanes; false where they would be too many bytes. The wheel has four times the
+/* The wheel and the lanes; false where they would be too many bytes. The wheel has twice the
  * longest time from a look to what it posts: a packet and its gap, and a hop with its credit. */
 static bool lanes_make(struct clocked *g, int32_t gap)
 {
     struct arena *a = g->net->arena;
-    const int64_t ahead = 4 * (int64_t)(g->longest + ROUTER_AHEAD + gap + g->tau + g->longest_wire +
-                                        g->credit + g->setup + g->pause);
+    const int64_t ahead = 2 * ((int64_t)(g->longest + ROUTER_AHEAD) * g->flit + gap + g->tau +
+                               g->longest_wire + g->credit + g->setup + g->pause);
     const size_t lanes = (size_t)g->nport * g->nchannel;
+    if (ahead >= MOST_WHEEL) return false;
     g->wheel = 1;
     g->ring = CLOCKED_ROW - 1;
     while (g->ring + 1 < places_needed(g)) g->ring = 2 * g->ring + 1;
@@ -215,16 +236,17 @@ static bool lanes_make(struct clocked *g, int32_t gap)
     while (1 << g->word_shift < g->words) g->word_shift++;
     const size_t slots = ((size_t)g->wheel + 1) << g->word_shift,
                  places = size_product(lanes, (size_t)g->ring + 1);
-    if (g->wheel >= MOST_WHEEL || !are_few(g, g->nport, slots + places)) return false;
+    if (!are_few(g, g->nport, slots + places)) return false;
     g->slot = TAKE(a, slots, uint64_t);
     for (int r = 0; r < g->nrouter; r++) {
         g->router[r].slot = g->slot + r / CLOCKED_WORD;
-        g->router[r].bit = UINT64_C(1) << r % CLOCKED_WORD;
+        g->router[r].bit = (uint16_t)(r % CLOCKED_WORD);
     }
     g->again = TAKE(a, g->router_words, uint64_t);
     g->stay = TAKE(a, places, union clocked_stay);
     g->stay_row = (int32_t)lanes * CLOCKED_ROW;
     g->option = TAKE(a, size_product(lanes, CLOCKED_OPTIONS), struct route_option);
+    g->retry = TAKE(a, lanes, int32_t);
     g->match = TAKE(a, lanes, struct clocked_match);
     g->side = TAKE(a, g->nport, struct clocked_side);
     g->ask = TAKE(a, size_product(CLOCKED_BIDS, g->nchannel), struct clocked_ask);
@@ -316,11 +338,12 @@ bool net_clocked(struct net *n, const struct clocked_list *q, struct clocked_res
     if (n->type != &net_routed_packet && n->type != &net_routed_flit) return false;
     const struct routers *from = n->state;
     int32_t gap = 0;
-    if (!network_is_even(n, from)) return false;
-    struct clocked *g = clocked_make(n, q, r);
+    const sim_ps unit = cycle_find(n, from);
+    if (unit == 0) return false;
+    struct clocked *g = clocked_make(n, unit, q, r);
     for (int i = 0; i < n->nport; i++)
         gap = clocked_later(gap, (int32_t)(n->port[i].gap / g->unit));
-    if (!list_is_even(g, gap) || !ports_make(g, from)) return false;
+    if (!list_is_even(g) || !ports_make(g, from)) return false;
     ports_fill(g, from);
     if (!lanes_make(g, gap)) return false;
     g->next = TAKE_FULL(n->arena, q->count + 1, int32_t, true);

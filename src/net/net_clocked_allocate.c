@@ -5,7 +5,7 @@
  * switch to flits. A head that asks for a channel bids for the switch as well, in the hope of
  * getting the channel: where it does not, its turn at the switch is lost. Both allocators go in
  * rounds of offers and acceptances, by turn; that is iSLIP. */
-#include "net/net_clocked_step.h"
+#include "net/net_clocked_allocate.h"
 
 /* ---- channels ---- */
 
@@ -20,7 +20,7 @@ static void ask_add(struct clocked *g, struct clocked_lane *in, struct clocked_l
                     int priority)
 {
     struct clocked_match *m = match_of(g, out);
-    clocked_tries(g, in);
+    clocked_tries(g, clocked_router_of(g, in), in);
     m->match = m->wish = m->fresh = NULL;
     g->ask[g->nask++] = (struct clocked_ask){in, out, priority};
 }
@@ -130,7 +130,7 @@ static bool bid_add(struct clocked *g, struct clocked_lane *v, struct clocked_po
 {
     struct clocked_port *in = clocked_port_of(g, v);
     const int n = (int)g->nchannel, turn = in->turn;
-    clocked_tries(g, v);
+    clocked_tries(g, clocked_router_of(g, v), v);
     for (int i = 0; i < g->nbid; i++) {
         struct clocked_bid *b = &g->bid[i];
         if (b->in != in || b->out != out) continue;
@@ -177,7 +177,7 @@ static int32_t bid_asking(struct clocked *g, struct clocked_lane *v, int32_t now
         const struct clocked_way o = clocked_option(g, v, i);
         if ((!g->strict && o.priority != best) || !may[i]) continue;
         int32_t at = clocked_later(clocked_port_of(g, v)->passed, o.port->free);
-        if (at <= now && !bid_add(g, v, o.port, true)) at = now + 1;
+        if (at <= now && !bid_add(g, v, o.port, true)) at = now + g->flit;
         if (at > now) again = clocked_sooner(again, at);
     }
     return again;
@@ -234,14 +234,14 @@ static void switch_allocate(struct clocked *g)
 
 /* Requests of the n lanes that can do something now: one that has its channel bids for the switch,
  * a head that has none asks for channels, too. Returns when some of them look again. */
-static int32_t requests(struct clocked *g, int n, int32_t now)
+static int32_t requests(struct clocked *g, struct clocked_lane *const *lane, int n, int32_t now)
 {
     int32_t again = CLOCKED_NEVER;
     for (int k = 0; k < n; k++) {
-        struct clocked_lane *v = g->active[k];
+        struct clocked_lane *v = lane[k];
         if (v->head.state == LANE_SENDING) {
             struct clocked_port *out = clocked_port_of(g, &g->lane[v->front->ahead->lane]);
-            if (!bid_add(g, v, out, false)) again = clocked_sooner(again, now + 1);
+            if (!bid_add(g, v, out, false)) again = clocked_sooner(again, now + g->flit);
             continue;
         }
         /* A head asks for channels on all its ways. */
@@ -278,12 +278,13 @@ static bool winner_sends(struct clocked *g, const struct clocked_bid *b, int32_t
     return true;
 }
 
-/* Channels to heads, the switch to flits, for n lanes that may be in each other's way. Returns when
- * to look again. */
-static int32_t allocate_together(struct clocked *g, int n, int32_t now)
+/* Channels to heads, the switch to flits, for n lanes `lane` that may be in each other's way.
+ * Returns when to look again. */
+static int32_t allocate_together(struct clocked *g, struct clocked_lane *const *lane, int n,
+                                 int32_t now)
 {
     g->nask = g->nbid = 0;
-    int32_t again = requests(g, n, now);
+    int32_t again = requests(g, lane, n, now);
     channels_allocate(g);
     switch_allocate(g);
     channels_take(g);
@@ -292,34 +293,40 @@ static int32_t allocate_together(struct clocked *g, int n, int32_t now)
         const struct clocked_bid *b = &g->bid[i];
         const bool won = side_of(g, b->in)->match == b->out && side_of(g, b->out)->match == b->in;
         if (won && winner_sends(g, b, now)) continue;
-        again = clocked_sooner(again, now + 1);
+        again = clocked_sooner(again, now + g->flit);
     }
     /* Of a lane that has sent, the next head waits, too, but did not ask: it has a look coming. */
     for (int i = 0; i < g->nask; i++) {
         const struct clocked_lane *in = g->ask[i].in;
-        if (in->due <= now && clocked_waits(in)) again = clocked_sooner(again, now + 1);
+        if (in->due <= now && clocked_waits(in)) again = clocked_sooner(again, now + g->flit);
     }
     return again;
 }
 
-/* The lanes of router o that can do something now into g->active, but for those that tried before
- * in this cycle: how many. Of the others: *again, when the first of them can. A head whose way is
+/* The lanes of router o that can do something now into g->active, but for those that tried within
+ * the last flit: how many. Of the others: *again, when the first of them can. A head whose way is
  * asked for only where it stands asks here. */
-static int active_find(struct clocked *g, const struct clocked_router *o, int32_t now,
-                       int32_t *again)
+static int active_find(struct clocked *g, struct clocked_router *o, int32_t now, int32_t *again)
 {
-    const uint64_t tried = o->tried == now ? o->lanes_tried : 0;
     int n = 0;
-    for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
-        const int i = __builtin_ctzll(busy);
-        struct clocked_lane *v = &o->lane[i];
-        if (v->head.state == LANE_ROUTING && v->due <= now) clocked_route(g, v);
-        const int32_t at =
-            v->head.state == LANE_SENDING ? clocked_sends_from(g, v, now, g->whole) : v->due;
-        if (at > now) *again = clocked_sooner(*again, at);
-        else if (!(tried >> i & 1)) g->active[n++] = v;
-    }
+    *again = clocked_have_come(o, now);
+    for (int k = 0; k < g->sets; k++)
+        for (uint64_t busy = o->busy[k]; busy; busy &= busy - 1) {
+            struct clocked_lane *v = clocked_lane_of(o, k, busy);
+            if (v->head.state == LANE_ROUTING && v->due <= now) clocked_route(g, v);
+            int32_t at =
+                v->head.state == LANE_SENDING ? clocked_sends_from(g, v, now, g->whole) : v->due;
+            at = clocked_later(at, g->retry[clocked_number(g, v)]);
+            if (at > now) *again = clocked_sooner(*again, at);
+            else g->active[n++] = v;
+        }
     return n;
+}
+
+int32_t clocked_alone(struct clocked *g, struct clocked_lane *v, int32_t now)
+{
+    if (v->head.state != LANE_ASKING || g->single) return clocked_pass(g, v, now);
+    return allocate_together(g, &v, 1, now);
 }
 
 /* v alone: it shares no port with others that can do something now, so that it cannot meet them,
@@ -328,7 +335,7 @@ static int32_t look_alone(struct clocked *g, struct clocked_lane *v, int32_t now
 {
     int32_t again = CLOCKED_NEVER;
     if (v->head.state != LANE_ASKING || !clocked_quick(g, v, now, &again))
-        return clocked_pass(g, v, now);
+        return clocked_alone(g, v, now);
     return again;
 }
 
@@ -347,24 +354,24 @@ static int32_t meet_two(struct clocked *g, struct clocked_router *o, int32_t now
         const int32_t again = look_alone(g, v, now);
         return clocked_sooner(again, look_alone(g, w, now));
     }
-    /* Heads with several ways, or that want channels of one port, need all rounds. */
+    /* Heads with several ways, or that want channels of one port, need all rounds; and all heads
+     * where a channel that a lone one is given in the first round does not stay its own (single).
+     */
     const bool asks = v->head.state != LANE_SENDING, also = w->head.state != LANE_SENDING,
                mixed = (asks && v->head.noption > 1) || (also && w->head.noption > 1) ||
-                       (asks && also && out);
-    return mixed ? allocate_together(g, 2, now) : clocked_few(g, o, 2, now);
+                       (asks && also && out) || (!g->single && (asks || also));
+    return mixed ? allocate_together(g, g->active, 2, now) : clocked_few(g, o, 2, now);
 }
 
-/* A channel that a lone head is given stays its own (single); else all go together. */
 int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t now)
 {
     struct crowd c = {0};
     int32_t again = CLOCKED_NEVER;
     int m = 0;
-    if (n == 2 && g->single) return meet_two(g, o, now);
+    if (n == 2) return meet_two(g, o, now);
     for (int k = 0; k < n; k++) {
         const struct clocked_lane *v = g->active[k];
         const uint64_t in = UINT64_C(1) << g->entry[v - o->lane], out = clocked_ways(v);
-        if (v->head.state == LANE_ASKING && !g->single) return allocate_together(g, n, now);
         c.in_twice |= c.in & in;
         c.out_twice |= c.out & out;
         c.in |= in;
@@ -379,20 +386,17 @@ int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t
         }
         g->active[m++] = v;
         if (v->head.state == LANE_SENDING) continue;
-        c.mixed |= v->head.noption > 1 || (c.asked & out);
+        c.mixed |= !g->single || v->head.noption > 1 || (c.asked & out);
         c.asked |= out;
     }
     if (m == 0) return again;
     const int32_t few = c.mixed ? -1 : clocked_few(g, o, m, now);
-    return clocked_sooner(again, few >= 0 ? few : allocate_together(g, m, now));
+    return clocked_sooner(again, few >= 0 ? few : allocate_together(g, g->active, m, now));
 }
 
 int32_t clocked_look_slowly(struct clocked *g, struct clocked_router *o, int32_t now)
 {
-    int32_t again = CLOCKED_NEVER;
+    int32_t again;
     const int n = active_find(g, o, now, &again);
-    if (n > 0) again = clocked_sooner(again, clocked_meet(g, o, n, now));
-    if (o->tried != now) return again;
-    /* Who tried before in this cycle comes back as it said then. */
-    return o->again = clocked_sooner(again, o->again);
+    return n > 0 ? clocked_sooner(again, clocked_meet(g, o, n, now)) : again;
 }

@@ -132,10 +132,10 @@ static bool bid_of_head(struct clocked *g, struct clocked_router *o, struct cloc
     *again = clocked_sooner(*again, c.again);
     if (c.bids && !bids) *again = clocked_sooner(*again, at);
     if (c.channel) clocked_given(v, b->input, c.channel, p->lanes_out + c.number);
-    if (c.channel || bids) o->lanes_tried |= UINT64_C(1) << b->input;
+    if (c.channel || bids) clocked_tries(g, o, v);
     if (c.channel && !bids) {
         clocked_own(g, v, c.channel);
-        *again = clocked_sooner(*again, now + 1);
+        *again = clocked_sooner(*again, now + g->flit);
     }
     return bids;
 }
@@ -167,10 +167,11 @@ static int32_t bids_end(struct clocked *g, const struct bid *bid, int n, int32_t
     int32_t again = CLOCKED_NEVER;
     s.n = 0;
     for (int i = 0; i < n; i++)
-        if (!bids_add(g, &s, &bid[i])) again = now + 1;
+        if (!bids_add(g, &s, &bid[i])) again = now + g->flit;
     const unsigned won = bids_win(g, &s);
     for (int i = 0; i < s.n; i++)
-        if (!bid_ends(g, &s.bid[i], won >> i & 1, s.meet[i] || s.merged[i], now)) again = now + 1;
+        if (!bid_ends(g, &s.bid[i], won >> i & 1, s.meet[i] || s.merged[i], now))
+            again = now + g->flit;
     return again;
 }
 
@@ -193,7 +194,7 @@ static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_
     if (n < 2 || (!in && !out)) {
         for (int i = 0; i < n; i++) {
             clocked_crosses(bid[i].in, bid[i].out);
-            if (!bid_ends(g, &bid[i], true, false, now)) again = now + 1;
+            if (!bid_ends(g, &bid[i], true, false, now)) again = now + g->flit;
         }
         return again;
     }
@@ -203,7 +204,7 @@ static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_
     clocked_crosses(winner->in, winner->out);
     if (loser->channel) clocked_own(g, loser->lane, loser->channel);
     bid_ends(g, winner, true, true, now);
-    return now + 1;
+    return now + g->flit;
 }
 
 /* ---- two that send ---- */
@@ -212,8 +213,8 @@ static int32_t pair_ends(struct clocked *g, const struct bid *bid, int n, int32_
 struct sender {
     struct bid bid;
     struct clocked_lane *to;
-    int32_t left; /* flits that are still to be sent */
-    int32_t at;   /* when the next one can go, as far as that is its own affair */
+    int32_t left;              /* flits that are still to be sent */
+    int32_t at;                /* when the next one can go, as far as that is its own affair */
     int32_t sent, first, last; /* flits that went; when */
 };
 
@@ -241,7 +242,7 @@ static void sender_sends(struct clocked *g, struct sender *s, int32_t at)
     struct clocked_lane *v = s->bid.lane, *to = s->to;
     clocked_crosses(in, out);
     in->turn = g->after[s->bid.input];
-    in->passed = out->free = at + 1;
+    in->passed = out->free = at + g->flit;
     clocked_stay(g, v, v->out++)->go = at;
     to->clear = CLOCKED_NEVER;
     if (out < g->sink) clocked_stay(g, to, to->in++)->come = at + g->reach + out->wire;
@@ -256,18 +257,16 @@ static void sender_sends(struct clocked *g, struct sender *s, int32_t at)
 static int32_t duet(struct clocked *g, struct clocked_router *o, int32_t now)
 {
     struct sender s[2] = {sender_of(g, o, g->active[0], now), sender_of(g, o, g->active[1], now)};
-    const uint64_t both = UINT64_C(1) << s[0].bid.input | UINT64_C(1) << s[1].bid.input;
-    int32_t until = now + ROUTER_AHEAD;
-    o->lanes_tried |= both;
-    for (int i = 0; i < 2; i++)
-        until = clocked_sooner(until, clocked_undisputed(g, s[i].bid.lane, s[i].bid.out,
-                                                         o->busy & ~both, now));
+    int32_t until = now + ROUTER_AHEAD * g->flit;
+    for (int i = 0; i < 2; i++) {
+        clocked_tries(g, o, s[i].bid.lane);
+        until = clocked_undisputed(g, s[i].bid.lane, s[!i].bid.lane, s[i].bid.out, until, now);
+    }
     for (int32_t at = now; at == now || at < until;) {
-        const int i = s[0].at != s[1].at ? s[1].at < s[0].at
-                                         : pair_turn(g, &s[0].bid, &s[1].bid);
+        const int i = s[0].at != s[1].at ? s[1].at < s[0].at : pair_turn(g, &s[0].bid, &s[1].bid);
         sender_sends(g, &s[i], at);
         for (int k = 0; k < 2; k++) {
-            s[k].at = s[k].left > 0 ? clocked_sends_from(g, s[k].bid.lane, at + 1, false)
+            s[k].at = s[k].left > 0 ? clocked_sends_from(g, s[k].bid.lane, at + g->flit, false)
                                     : CLOCKED_NEVER;
             /* A flit or credit that is not known yet may come. */
             if (s[k].at == CLOCKED_NEVER)
@@ -288,7 +287,6 @@ int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t 
     int32_t again = CLOCKED_NEVER;
     int nbid = 0;
     if (n > FEW) return -1;
-    clocked_try(g, o);
     if (n == 2 && !g->whole && goes_on(g->active[0]) && goes_on(g->active[1]))
         return duet(g, o, now);
     for (int k = 0; k < n; k++) {
@@ -297,11 +295,11 @@ int32_t clocked_few(struct clocked *g, struct clocked_router *o, int n, int32_t 
         struct bid *b = &bid[nbid];
         *b = (struct bid){
             .lane = v, .in = &o->port[g->entry[i]], .out = v->way, .input = (uint8_t)i};
-        if (v->head.state == LANE_SENDING) o->lanes_tried |= UINT64_C(1) << i;
+        if (v->head.state == LANE_SENDING) clocked_tries(g, o, v);
         else if (!bid_of_head(g, o, v, now, b, &again)) continue;
         nbid++;
     }
     /* Only now does anything cross: what bids see is the state at the beginning of the cycle. */
-    return clocked_sooner(again, nbid <= 2 ? pair_ends(g, bid, nbid, now)
-                                           : bids_end(g, bid, nbid, now));
+    return clocked_sooner(again,
+                          nbid <= 2 ? pair_ends(g, bid, nbid, now) : bids_end(g, bid, nbid, now));
 }

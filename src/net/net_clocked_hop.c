@@ -21,11 +21,11 @@ CLOCKED_INLINED void flits_note(struct clocked *g, struct clocked_lane *v, struc
         stay->at = now;
         return;
     }
-    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, v->out + k)].go = now + k;
+    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, v->out + k)].go = now + k * g->flit;
     if (v->head.noption == 0) return;
     stay = clocked_ring(g, out);
     const int32_t come = now + g->reach + p->wire;
-    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, k)].come = come + k;
+    for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, k)].come = come + k * g->flit;
 }
 
 /* The way on of out's front l, which has none behind it: mostly a step of the table. */
@@ -73,22 +73,22 @@ static inline void comes(struct clocked *g, struct clocked_lane *out, struct clo
     struct clocked_router *o = &g->router[p->to];
     out->front = out->back = l;
     out->due = due;
-    o->busy |= UINT64_C(1) << (out - o->lane);
+    clocked_comes(g, o, (int)(out - o->lane), due);
     clocked_wake(g, p->to, due);
     way_on(g, out, p, l);
 }
 
 /* Whether all flits of v's front can follow each other from now on, and nobody can come between:
  * level flit. */
-static inline bool flits_follow(const struct clocked *g, const struct clocked_router *o,
-                                const struct clocked_lane *v, int32_t flits, int32_t now)
+static inline bool flits_follow(const struct clocked *g, const struct clocked_lane *v,
+                                int32_t flits, int32_t now)
 {
+    const int32_t tail = now + (flits - 1) * g->flit;
+
     if (v->in - v->out < flits || flits > ROUTER_AHEAD || flits > g->buffer) return false;
     /* They come one after the other: the last one says it of all. */
-    if (clocked_stay(g, v, v->out + flits - 1)->come > now + flits - 1) return false;
-    const uint64_t others = o->busy & ~(UINT64_C(1) << (v - o->lane));
-    return flits == 1 ||
-           now + flits <= (others ? clocked_undisputed(g, v, v->way, others, now) : now + g->tau);
+    if (clocked_stay(g, v, v->out + flits - 1)->come > tail) return false;
+    return flits == 1 || tail < clocked_undisputed(g, v, v, v->way, tail + 1, now);
 }
 
 /* The channel of v's way whose turn it is. */
@@ -98,22 +98,21 @@ static inline int turn_channel(const struct clocked_lane *v, const struct clocke
     return v->head.first + (turn >= 0 && turn < v->head.count ? turn : 0);
 }
 
-/* Of the channels of v's way, from that whose turn it is on and round, the first one that v gets at
- * once with room for all of it; -1: there is none. A channel that is clear has all its credits; at
- * level packet one that is not may have room enough. */
+/* Of the channels of v's way, from `number` on and round, the first one that v gets at once; -1:
+ * there is none. A channel that is clear has all its credits. At level packet it gets one with room
+ * for all of it; at level flit any, but goes only if that has a credit. */
 static __attribute__((noinline)) int open_channel(struct clocked *g, const struct clocked_lane *v,
-                                                  int32_t now)
+                                                  int number, int32_t now)
 {
     const struct clocked_port *p = v->way;
     const int first = v->head.first, end = first + v->head.count;
-    int number = turn_channel(v, p);
     for (int i = first; i < end; i++) {
         struct clocked_lane *out = &p->lane[number];
         if (out->clear <= now) return number;
         if (!out->owned && out->free <= now) {
+            const int32_t unit = g->whole ? v->front->flits : 1;
+            if (p < g->sink && clocked_room(g, out, p, unit, now, g->whole) <= now) return number;
             if (!g->whole) return -1;
-            if (p < g->sink && clocked_room(g, out, p, v->front->flits, now, true) <= now)
-                return number;
         }
         if (++number == end) number = first;
     }
@@ -157,13 +156,24 @@ static __attribute__((noinline)) int channel_of_two(struct clocked *g, const str
         nopen += open;
     }
     /* Both ways bid, and one bid is left over. */
-    if (nopen == CLOCKED_OPTIONS && (g->strict || o[0].priority == o[1].priority)) later = now + 1;
+    if (nopen == CLOCKED_OPTIONS && (g->strict || o[0].priority == o[1].priority))
+        later = now + g->flit;
     *again = later;
     return best;
 }
 
-/* All turns move on as the allocators would have moved them: lane i of its router sends over
- * channel `number` of p. */
+/* Where priorities count, what was offered in the first round of an allocation stands in those that
+ * follow: the head accepts the next channel after that whose turn it was, `number`. -1: that is not
+ * clear. */
+static __attribute__((noinline)) int next_channel(struct clocked *g, const struct clocked_lane *v,
+                                                  int number, int32_t now)
+{
+    const int first = v->head.first, next = number + 1;
+    return open_channel(g, v, next < first + v->head.count ? next : first, now);
+}
+
+/* All turns move on as the allocators would have moved them: lane i of its router sends over p,
+ * whose channel `number` was offered to it first. */
 static inline void turns_move(const struct clocked *g, struct clocked_lane *v, int i,
                               struct clocked_port *in, struct clocked_port *p, int number)
 {
@@ -183,24 +193,28 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     struct clocked_lane *v = &o->lane[i];
     struct clocked_port *in = &o->port[g->entry[i]], *p = v->way;
     struct clocked_leg *l = v->front;
-    const int32_t flits = l->flits, gone = now + flits;
+    const int32_t flits = l->flits, gone = now + flits * g->flit;
     if (in->passed > now || p->free > now) return false;
-    int number;
+    int number, turn;
     if (v->head.noption > 1) {
-        if (v->other != p->out || (number = channel_of_two(g, v, now, again)) < 0) return false;
-        /* It bid for both ways: a second look in this cycle leaves it out. */
-        clocked_try(g, o);
-        o->lanes_tried |= UINT64_C(1) << i;
+        if (!g->single || v->other != p->out || (number = channel_of_two(g, v, now, again)) < 0)
+            return false;
+        /* It bid for both ways: a second look within a flit leaves it out. */
+        clocked_tries(g, o, v);
+        turn = number;
     } else {
         number = turn_channel(v, p);
-        if (p->lane[number].clear > now && (number = open_channel(g, v, now)) < 0) return false;
+        if (p->lane[number].clear > now && (number = open_channel(g, v, number, now)) < 0)
+            return false;
+        turn = number;
+        if (!g->single && (number = next_channel(g, v, number, now)) < 0) return false;
     }
     struct clocked_lane *out = &p->lane[number];
     const bool clear = out->clear <= now, sink = v->head.noption == 0, two = v->head.noption > 1;
-    turns_move(g, v, i, in, p, number);
+    turns_move(g, v, i, in, p, turn);
     /* Flits that somebody may come between, or whose credits are not all back, go as far as that is
      * known. */
-    if (!whole && (!clear || !flits_follow(g, o, v, flits, now))) {
+    if (!whole && (!clear || !flits_follow(g, v, flits, now))) {
         clocked_pass_on(g, v, in, p, number, now, INT32_MAX);
         return true;
     }
@@ -215,11 +229,11 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
      * nobody upstream has a channel into it. */
     if (l->behind) {
         clocked_front_changes(g, v, in);
-        if (two && clocked_waits(v)) *again = now + 1;
+        if (two && clocked_waits(v)) *again = now + g->flit;
     } else {
         v->head.state = LANE_IDLE;
         v->clear = clocked_later(v->free, gone + g->credit + in->wire);
-        o->busy &= ~(UINT64_C(1) << i);
+        clocked_has_none(o, i);
     }
     out->free = gone + g->pause; /* nobody ever owned it */
     /* Flits take no place in the cycle in which it is left. */
@@ -230,7 +244,7 @@ CLOCKED_INLINED bool hop(struct clocked *g, struct clocked_router *o, int i, int
     }
     out->clear = clocked_later(out->free, g->credit);
     clocked_leg_return(g, l);
-    clocked_delivered(g, l->worm, gone - 1);
+    clocked_delivered(g, l->worm, gone - g->flit);
     return true;
 }
 
@@ -242,12 +256,12 @@ bool clocked_hop(struct clocked *g, struct clocked_router *o, int i, int32_t ask
 
 bool clocked_quick(struct clocked *g, struct clocked_lane *v, int32_t now, int32_t *again)
 {
-    struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
-    const int i = (int)(v - o->lane);
-    int32_t asks = CLOCKED_NEVER;
-    for (uint64_t busy = o->busy & ~(UINT64_C(1) << i); busy; busy &= busy - 1) {
-        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
-        asks = clocked_sooner(asks, w->head.state == LANE_SENDING ? CLOCKED_NEVER : w->due);
-    }
-    return clocked_hop(g, o, i, asks, now, again);
+    struct clocked_router *o = clocked_router_of(g, v);
+    int32_t asks = clocked_next_due(o);
+    for (int k = 0; k < g->sets; k++)
+        for (uint64_t busy = o->busy[k]; busy; busy &= busy - 1) {
+            const struct clocked_lane *w = clocked_lane_of(o, k, busy);
+            if (w != v && w->head.state != LANE_SENDING) asks = clocked_sooner(asks, w->due);
+        }
+    return clocked_hop(g, o, (int)(v - o->lane), asks, now, again);
 }

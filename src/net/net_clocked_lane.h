@@ -3,7 +3,7 @@
 #ifndef NET_NET_CLOCKED_LANE_H
 #define NET_NET_CLOCKED_LANE_H
 
-#include "net/net_clocked_wheel.h"
+#include "net/net_clocked_set.h"
 
 /* clocked_leg_return: l into its pool, the last in being the first out: it is still in the cache.
  */
@@ -20,48 +20,10 @@ static inline void clocked_worm_return(struct clocked *g, struct clocked_worm *w
     g->free_worm = w;
 }
 
-/* clocked_number: of a lane among all lanes. */
-static inline int clocked_number(const struct clocked *g, const struct clocked_lane *v)
-{
-    return (int)(v - g->lane);
-}
-
-/* clocked_port_of: the port behind which lane v lies. */
-static inline struct clocked_port *clocked_port_of(const struct clocked *g,
-                                                   const struct clocked_lane *v)
-{
-    return &g->port[v->port];
-}
-
 /* clocked_channel_of: which channel of port p lane v is. */
 static inline int clocked_channel_of(const struct clocked_port *p, const struct clocked_lane *v)
 {
     return (int)(v - p->lane);
-}
-
-/* clocked_bit: v, of port p, in a set of its router's lanes. */
-static inline uint64_t clocked_bit(const struct clocked *g, const struct clocked_port *p,
-                                   const struct clocked_lane *v)
-{
-    return UINT64_C(1) << (v - g->router[p->to].lane);
-}
-
-/* clocked_try: lanes of o take part in an allocation of this cycle, and so in no other
- * (router_tries). */
-static inline void clocked_try(const struct clocked *g, struct clocked_router *o)
-{
-    if (o->tried == g->now) return;
-    o->tried = g->now;
-    o->lanes_tried = 0;
-    o->again = CLOCKED_NEVER;
-}
-
-/* clocked_tries: v does. */
-static inline void clocked_tries(const struct clocked *g, const struct clocked_lane *v)
-{
-    struct clocked_router *o = &g->router[clocked_port_of(g, v)->to];
-    clocked_try(g, o);
-    o->lanes_tried |= UINT64_C(1) << (v - o->lane);
 }
 
 /* clocked_ways: the set of outputs that v's front may go over. */
@@ -102,7 +64,8 @@ static inline int32_t clocked_gone(const struct clocked *g, const struct clocked
     int32_t k = v->nleft - 1;
     if (v->out - last > 4 * g->longest) k -= (v->out - 1 - last) / g->longest;
     while (ring[clocked_place(g, k)].position > last) k--;
-    return ring[clocked_place(g, k)].at + last - ring[clocked_place(g, k)].position;
+    const union clocked_stay *s = &ring[clocked_place(g, k)];
+    return s->at + (last - s->position) * g->flit;
 }
 
 /* clocked_room: from which cycle on (>= now) `flits` flits may enter v, a lane of p, one after the
@@ -124,7 +87,7 @@ CLOCKED_INLINED int32_t clocked_room(const struct clocked *g, struct clocked_lan
     }
     if (last < 0) return now;
     const int32_t go = whole ? clocked_gone(g, v, last) : clocked_stay(g, v, last)->go;
-    return clocked_later(now, go + late - (flits - 1));
+    return clocked_later(now, go + late - (flits - 1) * g->flit);
 }
 
 /* clocked_restart: v is clear, and counts anew: it stays in the first places of its ring. */
@@ -137,7 +100,7 @@ static inline void clocked_enter(struct clocked_lane *v, struct clocked_leg *l)
     v->back = l;
 }
 
-/* clocked_after: the place of number n after `turn`, round. Numbers are below 128, so that those
+/* clocked_after: the place of number n after `turn`, round. Numbers are below 256, so that those
  * that wrap come after all others in eight bits, too. */
 static inline uint8_t clocked_after(int n, int turn) { return (uint8_t)(n - turn); }
 

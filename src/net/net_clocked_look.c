@@ -6,33 +6,36 @@
 #include "net/net_clocked_step.h"
 
 /* The lanes of router o that can do something now into g->active, and how many; *next: when the
- * first of the others can. A head whose way is asked for only where it stands asks here. */
+ * first of the others can. A head whose way is asked for only where it stands asks here. `wide`:
+ * the lanes are more than a word's, or have a queue. */
 CLOCKED_INLINED int due_find(struct clocked *g, struct clocked_router *o, int32_t now,
-                             int32_t *next, const bool whole)
+                             int32_t *next, const bool whole, const bool wide)
 {
     int n = 0;
-    for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
-        struct clocked_lane *v = &o->lane[__builtin_ctzll(busy)];
-        int32_t at = v->due;
-        if (v->head.state != LANE_ASKING) {
-            if (v->head.state == LANE_SENDING) at = clocked_sends_from(g, v, now, whole);
-            else if (at <= now) {
-                clocked_route(g, v);
-                at = v->due;
+    *next = wide ? clocked_have_come(o, now) : CLOCKED_NEVER;
+    for (int k = 0; k < (wide ? g->sets : 1); k++)
+        for (uint64_t busy = o->busy[k]; busy; busy &= busy - 1) {
+            struct clocked_lane *v = clocked_lane_of(o, k, busy);
+            int32_t at = v->due;
+            if (v->head.state != LANE_ASKING) {
+                if (v->head.state == LANE_SENDING) at = clocked_sends_from(g, v, now, whole);
+                else if (at <= now) {
+                    clocked_route(g, v);
+                    at = v->due;
+                }
             }
+            if (at > now) *next = clocked_sooner(*next, at);
+            else g->active[n++] = v;
         }
-        if (at > now) *next = clocked_sooner(*next, at);
-        else g->active[n++] = v;
-    }
     return n;
 }
 
-/* Router o, of which no lane tried before in this cycle. Returns when to look again. */
+/* Router o, of which no lane tried within the last flit. Returns when to look again. */
 CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, int32_t now,
-                                  const bool whole)
+                                  const bool whole, const bool wide)
 {
-    int32_t next = CLOCKED_NEVER, again;
-    const int n = due_find(g, o, now, &next, whole);
+    int32_t next, again;
+    const int n = due_find(g, o, now, &next, whole, wide);
     if (n == 0) return next;
     if (n > 1) {
         again = clocked_meet(g, o, n, now);
@@ -41,26 +44,23 @@ CLOCKED_INLINED int32_t look_once(struct clocked *g, struct clocked_router *o, i
         again = CLOCKED_NEVER;
         if (v->head.state != LANE_ASKING ||
             !clocked_hop(g, o, (int)(v - o->lane), next, now, &again))
-            again = clocked_pass(g, v, now);
+            again = clocked_alone(g, v, now);
         else if (again == CLOCKED_NEVER) return next;
     }
-    again = clocked_sooner(again, next);
-    if (o->tried == now) o->again = again;
-    return again;
+    return clocked_sooner(again, next);
 }
 
-/* If router r is due; `tried`: lanes of it tried before in this cycle. Who is asked for in this
- * very cycle comes after all others, whatever bits of it are still there (`second`). */
-CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool second, bool tried,
-                          const bool whole)
+/* If router r is due. Who is asked for in this very cycle comes after all others, whatever bits of
+ * it are still there (`second`). */
+CLOCKED_INLINED void look(struct clocked *g, int r, int32_t now, bool second, const bool whole,
+                          const bool wide)
 {
     struct clocked_router *o = &g->router[r];
     if (o->wake != now) return; /* an earlier look did it */
-    if (!second && (g->again[r / CLOCKED_WORD] & o->bit)) return;
+    if (!second && g->again[o->slot - g->slot] >> o->bit & 1) return;
     o->wake = CLOCKED_NEVER;
-    if (!o->busy) return; /* what was waited for has been served */
     const int32_t again =
-        tried || !g->single ? clocked_look_slowly(g, o, now) : look_once(g, o, now, whole);
+        o->retry > now ? clocked_look_slowly(g, o, now) : look_once(g, o, now, whole, wide);
     clocked_wake_if(g, o, again, again != CLOCKED_NEVER);
 }
 
@@ -75,12 +75,12 @@ static inline void look_sources(struct clocked *g, uint64_t *source, int32_t now
 /* Seldom: kept out of the loop of the cycle. */
 static __attribute__((noinline)) void clocked_look_again(struct clocked *g, int r, int32_t now)
 {
-    look(g, r, now, true, g->router[r].tried == now, g->whole);
+    look(g, r, now, true, g->whole, true);
 }
 
 /* The sets of a slot are emptied on the way. A router that wakes a node of this cycle is followed
  * by it at once, and one that is woken in it comes after all others. */
-CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole)
+CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole, const bool wide)
 {
     const int32_t now = g->now;
     uint64_t *source = router + g->router_words;
@@ -89,7 +89,7 @@ CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole
         uint64_t word = router[w];
         router[w] = 0;
         for (; word; word &= word - 1) {
-            look(g, w * CLOCKED_WORD + __builtin_ctzll(word), now, false, false, whole);
+            look(g, w * CLOCKED_WORD + __builtin_ctzll(word), now, false, whole, wide);
             if (g->sources) look_sources(g, source, now);
         }
     }
@@ -102,6 +102,9 @@ CLOCKED_INLINED void cycle(struct clocked *g, uint64_t *router, const bool whole
 /* In the order of net_router_gather.c. */
 void clocked_cycle(struct clocked *g, uint64_t *slot)
 {
-    if (g->whole) cycle(g, slot, true);
-    else cycle(g, slot, false);
+    const bool wide = g->queues || g->sets > 1;
+    if (g->whole && wide) cycle(g, slot, true, true);
+    else if (g->whole) cycle(g, slot, true, false);
+    else if (wide) cycle(g, slot, false, true);
+    else cycle(g, slot, false, false);
 }

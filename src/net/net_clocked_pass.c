@@ -32,7 +32,8 @@ static inline void front_comes(struct clocked *g, struct clocked_lane *v, struct
         v->due += g->setup;
         clocked_route(g, v);
     }
-    o->busy |= UINT64_C(1) << (v - o->lane);
+    if (g->queues) clocked_has_none(o, (int)(v - o->lane));
+    clocked_comes(g, o, (int)(v - o->lane), v->due);
     clocked_wake(g, p->to, v->due);
 }
 
@@ -49,8 +50,9 @@ static inline void front_changes(struct clocked *g, struct clocked_lane *v, stru
         clocked_front(g, v, p);
         return;
     }
+    struct clocked_router *o = &g->router[p->to];
     v->head.state = LANE_IDLE;
-    g->router[p->to].busy &= ~clocked_bit(g, p, v);
+    clocked_has_none(o, (int)(v - o->lane));
 }
 
 void clocked_front_changes(struct clocked *g, struct clocked_lane *v, struct clocked_port *p)
@@ -85,24 +87,30 @@ static int32_t competes(const struct clocked *g, const struct clocked_lane *v,
     const bool meets = w->port == v->port || clocked_ways(w) >> out->out & 1;
     if (w->head.state == LANE_SENDING) {
         left -= w->front->ahead->sent;
-        if (meets)
-            return w->out < w->in ? clocked_stay(g, w, w->out)->come : now + g->reach;
+        if (meets) return w->out < w->in ? clocked_stay(g, w, w->out)->come : now + g->reach;
     } else if (meets) {
         return w->due;
     }
     /* With nobody behind it there is none that is known here yet. */
     if (!w->front->behind) return CLOCKED_NEVER;
-    return clocked_later(now, w->due) + left + g->setup;
+    return clocked_later(now, w->due) + left * g->flit + g->setup;
 }
 
 int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
-                           const struct clocked_port *out, uint64_t others, int32_t now)
+                           const struct clocked_lane *also, const struct clocked_port *out,
+                           int32_t until, int32_t now)
 {
-    const struct clocked_lane *lane = g->router[clocked_port_of(g, v)->to].lane;
-    int32_t until = now + g->tau;
+    const struct clocked_router *o = clocked_router_of(g, v);
     /* Beyond that, heads may come that are not known here yet. */
-    for (; others && until > now; others &= others - 1)
-        until = clocked_sooner(until, competes(g, v, &lane[__builtin_ctzll(others)], out, now));
+    until = clocked_sooner(until, now + g->tau);
+    for (int k = 0; k < g->sets; k++)
+        for (uint64_t busy = o->busy[k]; busy && until > now; busy &= busy - 1) {
+            const struct clocked_lane *w = clocked_lane_of(o, k, busy);
+            if (w != v && w != also) until = clocked_sooner(until, competes(g, v, w, out, now));
+        }
+    /* None competes before it is due. */
+    for (int k = o->next; k < o->end && o->coming[k].due < until; k++)
+        until = clocked_sooner(until, competes(g, v, &o->lane[o->coming[k].lane], out, now));
     return until;
 }
 
@@ -126,8 +134,9 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
     if (most > here) most = here;
     if (most > ROUTER_AHEAD) most = ROUTER_AHEAD;
     if (most == 1) return 1;
-    const uint64_t others = g->router[in->to].busy & ~clocked_bit(g, in, v);
-    const int32_t until = clocked_undisputed(g, v, p, others, now);
+    const int32_t all =
+        clocked_later(now, from[clocked_place(g, k + most - 2)].come) + (most + 1) * g->flit;
+    const int32_t until = clocked_undisputed(g, v, v, p, all, now);
     /* Mostly all credits are there. */
     const int32_t needed = out->in + most - 2 - g->buffer;
     const bool room =
@@ -135,7 +144,7 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
         (needed < out->out && to[clocked_place(g, needed)].go + g->credit + p->wire <= now);
     /* The next flit goes when it is there, the one before has gone, and its credit is back. */
     for (; sent < most; sent++) {
-        at = clocked_later(from[clocked_place(g, k)].come, at + 1);
+        at = clocked_later(from[clocked_place(g, k)].come, at + g->flit);
         if (at < until && !room) at = clocked_room(g, out, p, 1, at, false);
         if (at >= until) break;
         from[clocked_place(g, k++)].go = *last = at;
@@ -147,12 +156,14 @@ static inline int32_t flits_cross(struct clocked *g, struct clocked_lane *v,
 }
 
 /* Whether a head at router o may want a channel that is free from `at` on. */
-static bool somebody_asks(const struct clocked_router *o, int32_t at)
+static bool somebody_asks(const struct clocked *g, const struct clocked_router *o, int32_t at)
 {
-    for (uint64_t busy = o->busy; busy; busy &= busy - 1) {
-        const struct clocked_lane *w = &o->lane[__builtin_ctzll(busy)];
-        if (w->head.state != LANE_SENDING && w->due <= at) return true;
-    }
+    if (clocked_next_due(o) <= at) return true;
+    for (int k = 0; k < g->sets; k++)
+        for (uint64_t busy = o->busy[k]; busy; busy &= busy - 1) {
+            const struct clocked_lane *w = clocked_lane_of(o, k, busy);
+            if (w->head.state != LANE_SENDING && w->due <= at) return true;
+        }
     return false;
 }
 
@@ -179,8 +190,7 @@ static inline void rest_waits(struct clocked *g, const struct clocked_lane *v,
                               const struct clocked_port *in)
 {
     if (v->out < v->in)
-        clocked_wake(g, in->to,
-                     clocked_later(in->passed, clocked_stay(g, v, v->out)->come));
+        clocked_wake(g, in->to, clocked_later(in->passed, clocked_stay(g, v, v->out)->come));
 }
 
 /* A tail has crossed from v of port in into out at `tail`: the channel is free, and v has a new
@@ -189,12 +199,12 @@ static inline void tail_sent(struct clocked *g, struct clocked_lane *v, struct c
                              struct clocked_lane *out, const struct clocked_port *p, int32_t tail)
 {
     out->owned = false;
-    out->free = tail + 1 + g->pause;
+    out->free = tail + g->flit + g->pause;
     lane_clears(g, out, p);
     lane_clears(g, v, in);
     front_changes(g, v, in);
     /* Others may want the channel. */
-    if (somebody_asks(&g->router[in->to], out->free)) clocked_wake(g, in->to, out->free);
+    if (somebody_asks(g, &g->router[in->to], out->free)) clocked_wake(g, in->to, out->free);
 }
 
 /* Flits of packet m have crossed port p and are, or will be, in `out`: if m is the front there, its
@@ -231,7 +241,7 @@ void clocked_sent(struct clocked *g, struct clocked_lane *v, struct clocked_port
     struct clocked_port *p = v->way;
     m->sent += k;
     in->held -= k;
-    v->left = last + 1;
+    v->left = last + g->flit;
     if (p < g->sink) {
         p->held += k;
         flits_come(g, p, out, m, false, first);
@@ -247,7 +257,7 @@ void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_
     struct clocked_lane *out = &g->lane[m->lane];
     struct clocked_port *in = clocked_port_of(g, v), *p = clocked_port_of(g, out);
     const bool head = m->sent == 0, sink = p >= g->sink;
-    int32_t tail = now + l->flits - 1, sent = l->flits;
+    int32_t tail = now + (l->flits - 1) * g->flit, sent = l->flits;
     if (g->whole) packet_crosses(g, v, p, out, sink, now);
     else
         sent = flits_cross(g, v, in, p, out, sink, clocked_sooner(most, l->flits - m->sent), now,
@@ -256,7 +266,7 @@ void clocked_send(struct clocked *g, struct clocked_lane *v, int32_t now, int32_
     in->held -= sent;
     if (!g->whole && !sink) p->held += sent;
     if (head) m->first = now;
-    p->free = in->passed = v->left = tail + 1;
+    p->free = in->passed = v->left = tail + g->flit;
     if (!sink) flits_come(g, p, out, m, head, now);
     place_freed(g, v, in, now, g->whole);
     if (m->sent < l->flits) {
@@ -315,12 +325,12 @@ CLOCKED_INLINED void pass_on(struct clocked *g, struct clocked_lane *v, struct c
     struct clocked_lane *out = &p->lane[number];
     struct clocked_leg *l = v->front, *m = l;
     const bool sink = p >= g->sink;
-    int32_t sent = l->flits, tail = now + sent - 1;
+    int32_t sent = l->flits, tail = now + (sent - 1) * g->flit;
     if (whole) packet_crosses(g, v, p, out, sink, now);
     else sent = flits_cross(g, v, in, p, out, sink, clocked_sooner(most, sent), now, &tail);
     in->held -= sent;
     if (!whole && !sink) p->held += sent;
-    p->free = in->passed = v->left = tail + 1;
+    p->free = in->passed = v->left = tail + g->flit;
     if (whole || sent == l->flits) {
         v->front = l->behind;
         if (!sink) {
@@ -374,16 +384,17 @@ static int32_t head_alone(struct clocked *g, struct clocked_lane *v, int32_t now
         clocked_crosses(in, p);
         in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
     }
-    if (bids || c.channel) clocked_tries(g, v);
+    struct clocked_router *o = &g->router[in->to];
+    if (bids || c.channel) clocked_tries(g, o, v);
     /* A bid without a channel has spent its turn. */
-    if (!c.channel) return bids ? clocked_sooner(again, now + 1) : again;
-    clocked_given(v, (int)(v - g->router[in->to].lane), c.channel, p->lanes_out + c.number);
+    if (!c.channel) return bids ? clocked_sooner(again, now + g->flit) : again;
+    clocked_given(v, (int)(v - o->lane), c.channel, p->lanes_out + c.number);
     if (bids && (g->whole || p >= g->sink || clocked_room(g, c.channel, p, 1, now, false) <= now)) {
         clocked_pass_on(g, v, in, p, c.number, now, INT32_MAX);
         return again;
     }
     clocked_own(g, v, c.channel);
-    return clocked_sooner(again, now + 1);
+    return clocked_sooner(again, now + g->flit);
 }
 
 /* The output for which v's head bids with success: of those where it `may`, the ones of the highest
@@ -405,17 +416,17 @@ static struct clocked_port *find_output(struct clocked *g, const struct clocked_
         int32_t at = clocked_later(in->passed, o.port->free);
         int k = 0;
         while (k < nbid && bid[k] != o.port) k++;
-        if (at <= now && k < nbid) at = now + 1;
+        if (at <= now && k < nbid) at = now + g->flit;
         if (at > now) {
             *again = clocked_sooner(*again, at);
             continue;
         }
-        clocked_tries(g, v);
+        clocked_tries(g, clocked_router_of(g, v), v);
         bid[nbid++] = o.port;
         if (!best || clocked_after(o.port->out, in->accept) < clocked_after(best->out, in->accept))
             best = o.port;
     }
-    if (nbid > 1) *again = clocked_sooner(*again, now + 1);
+    if (nbid > 1) *again = clocked_sooner(*again, now + g->flit);
     return best;
 }
 
@@ -437,7 +448,7 @@ static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t 
         /* A strict rule's head goes only where all its ways are open. */
         bars = bars || (g->strict && !c.bids);
         if (!c.channel) continue;
-        clocked_tries(g, v);
+        clocked_tries(g, &g->router[in->to], v);
         if (best.channel &&
             (level < priority || (level == priority && c.distance >= best.distance)))
             continue;
@@ -450,16 +461,16 @@ static int32_t head_choosing(struct clocked *g, struct clocked_lane *v, int32_t 
         clocked_crosses(in, p);
         if (!bars) in->turn = clocked_next_channel(g, clocked_channel_of(in, v));
     }
-    if (!from) return p ? clocked_sooner(again, now + 1) : again;
+    if (!from) return p ? clocked_sooner(again, now + g->flit) : again;
     clocked_given(v, (int)(v - g->router[in->to].lane), best.channel,
                   from->lanes_out + best.number);
     if (p == from && !bars &&
         clocked_room(g, best.channel, p, g->whole ? v->front->flits : 1, now, g->whole) <= now) {
         clocked_pass_on(g, v, in, p, best.number, now, INT32_MAX);
-        return clocked_waits(v) ? clocked_sooner(again, now + 1) : again;
+        return clocked_waits(v) ? clocked_sooner(again, now + g->flit) : again;
     }
     clocked_own(g, v, best.channel);
-    return clocked_sooner(again, now + 1);
+    return clocked_sooner(again, now + g->flit);
 }
 
 int32_t clocked_pass(struct clocked *g, struct clocked_lane *v, int32_t now)

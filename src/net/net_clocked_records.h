@@ -8,8 +8,10 @@
 #include "net/net_clocked.h"
 #include "net/net_router.h"
 
-/* A router has lanes for a word's bits; each has so many ways on, and a bid for each. */
-enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_OPTIONS = 2, CLOCKED_BIDS = 128 };
+/* Most lanes and outputs of a router; ways on of a lane, and so its bids. */
+enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_OPTIONS = 2 };
+enum { CLOCKED_SET = 4, CLOCKED_LANES = CLOCKED_SET * CLOCKED_WORD };
+enum { CLOCKED_BIDS = CLOCKED_OPTIONS * CLOCKED_LANES };
 enum { CLOCKED_ROW = ROUTER_LINE / 8 }; /* places of a ring in a cache line */
 
 /* For whole packets and for flits apart: `whole` is constant in each. */
@@ -71,14 +73,21 @@ struct clocked_port {
     uint8_t accept, grant, turn, enter;
 };
 
+/* A lane of a router whose front is under way. */
+struct clocked_coming {
+    int32_t due, lane;
+};
+
 struct clocked_router {
-    _Alignas(ROUTER_LINE) uint64_t busy; /* lanes that have a front */
-    struct clocked_lane *lane;           /* its first ones */
+    _Alignas(ROUTER_LINE) int32_t wake; /* time of its next look */
+    int32_t retry;                      /* until when some lane has to wait after an allocation */
+    struct clocked_lane *lane;          /* its first ones */
     struct clocked_port *port;
-    uint64_t lanes_tried; /* in an allocation, */
-    int32_t tried, again; /* in which cycle; when they come back */
-    int32_t wake;         /* time of its next look */
-    uint64_t bit, *slot;  /* in the word of each slot; that of the first one */
+    uint64_t *slot;                /* its word of the first slot, */
+    struct clocked_coming *coming; /* (room) those of next .. end - 1, by due */
+    uint16_t next, end, room;
+    uint16_t bit;               /* and its bit in that */
+    uint64_t busy[CLOCKED_SET]; /* (sets words) lanes whose front has come */
 };
 
 struct clocked_source {
@@ -100,45 +109,26 @@ union clocked_stay {
     };
 };
 
-/* Of a lane in one allocation, see struct lane. */
-struct clocked_match {
-    struct clocked_lane *match, *wish, *fresh, *pick;
-    int pick_priority;
-    bool bars;
-};
-
-/* Of a port. */
-struct clocked_side {
-    const struct clocked_port *match, *wish, *pick;
-};
-
-struct clocked_ask {
-    struct clocked_lane *in, *out;
-    int priority;
-};
-
-struct clocked_bid {
-    struct clocked_lane *lane;
-    struct clocked_port *in, *out;
-    bool spec;
-};
-
 struct clocked {
     struct clocked_lane *lane;
     struct clocked_port *port;
     struct clocked_router *router;
     union clocked_stay *stay; /* see clocked_ring */
+    int32_t *retry;           /* (lanes) it took part in an allocation and does not before then */
     uint64_t *slot;           /* (wheel + 1, words): a bit for each router, then for each node */
     uint64_t *again;          /* routers that are looked at again in this cycle */
     int32_t wheel;            /* slots - 1: a power of two */
     int32_t now, last;        /* the last cycle that has a bit */
     int32_t words, router_words, word_shift, stay_row;
+    int sets;     /* words for the lanes of the router that has most */
+    int32_t flit; /* cycles of one */
     int32_t tau, credit, reach, setup, pause, buffer, ring, longest_wire;
     int32_t due; /* from when a head crosses a port, without a cable, until it asks, or looks */
     uint32_t nchannel;
     struct clocked_port *sink; /* first way out */
     bool sources;              /* nodes came to this cycle */
     bool whole, single, strict, priority, looks, looks_on;
+    bool queues; /* fronts under way stand in their router's queue */
     int iterations;
     struct clocked_source *source;
     int32_t *start, *next; /* (messages) cycle; the next in their source's list */
@@ -151,20 +141,20 @@ struct clocked {
     struct clocked_port **exit;        /* (routers x CLOCKED_WORD) by number of the output */
     struct clocked_head asking[4];     /* by state behind a step */
     /* Of a router's lanes: their ports, channels, the channels after these. */
-    uint8_t entry[CLOCKED_WORD], channel[CLOCKED_WORD], after[CLOCKED_WORD];
+    uint8_t entry[CLOCKED_LANES], channel[CLOCKED_LANES], after[CLOCKED_LANES];
     int nrouter, nnode, nport, nask, nbid;
     struct net *net;
     const struct clocked_list *list;
     struct clocked_result *result;
-    int64_t bytes;               /* of the message before, its flits and gap */
+    int64_t bytes;                         /* of the message before, its flits and gap */
     int32_t flits, gap, longest, shortest; /* flits of packets */
-    int done;                    /* messages that have left the network */
+    int done;                              /* messages that have left the network */
     sim_ps unit;
     struct clocked_match *match; /* (lanes) scratch of one allocation */
     struct clocked_side *side;   /* (ports) */
     struct clocked_ask *ask;
     struct clocked_bid *bid;
-    struct clocked_lane *active[CLOCKED_WORD + 1]; /* one more is written before it is counted */
+    struct clocked_lane *active[CLOCKED_LANES + 1]; /* one more is written before it is counted */
 };
 
 #endif

@@ -47,7 +47,7 @@ static void source_flits(struct clocked *g, int node, int32_t now)
         v->in += unit;
         p->held += unit;
         l->sent += unit;
-        z->free = at + unit;
+        z->free = at + unit * g->flit;
         if (v->front == l && head) clocked_front(g, v, p);
         else if (v->front == l && v->head.state == LANE_SENDING)
             clocked_wake(g, p->to, clocked_later(at + g->reach, now));
@@ -55,7 +55,7 @@ static void source_flits(struct clocked *g, int node, int32_t now)
     /* The tail has gone, or will at a time that is known. */
     v->owned = false;
     z->sending = NULL;
-    z->free = clocked_later(z->free, z->free - 1 + l->worm->gap);
+    z->free = clocked_later(z->free, z->free - g->flit + l->worm->gap);
 }
 
 /* All flits of l, one in each cycle from now on, into v of port p, which was clear and holds them
@@ -72,9 +72,10 @@ static void source_whole(struct clocked *g, struct clocked_source *z, struct clo
     p->held += flits;
     if (!g->whole) {
         union clocked_stay *stay = clocked_ring(g, v);
-        for (int32_t k = 0; k < flits; k++) stay[clocked_place(g, k)].come = now + g->reach + k;
+        for (int32_t k = 0; k < flits; k++)
+            stay[clocked_place(g, k)].come = now + g->reach + k * g->flit;
     }
-    z->free = clocked_later(now + flits, now + flits - 1 + l->worm->gap);
+    z->free = now + (flits - 1) * g->flit + clocked_later(g->flit, l->worm->gap);
     clocked_front(g, v, p);
 }
 
@@ -96,7 +97,7 @@ static int32_t source_begin(struct clocked *g, int node, int32_t now)
         /* Where chance names the channel, it names one anew a flit later, as in BookSim. */
         if (w->count == g->routing->channels) return again;
         w->count = routing_inject(g->routing, &w->route, &w->first);
-        return now + 1;
+        return now + g->flit;
     }
     struct clocked_lane *v = &z->port->lane[channel];
     const bool clear = v->clear <= now;

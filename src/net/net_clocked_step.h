@@ -13,13 +13,16 @@ void clocked_cycle(struct clocked *g, uint64_t *slot);
  * there one after the other. */
 void clocked_source_look(struct clocked *g, int node, int32_t now);
 
-/* clocked_look_slowly: at all lanes of router o, also where some tried before in this cycle.
+/* clocked_look_slowly: at all lanes of router o, also where some tried within the last flit.
  * Returns when to look again. */
 int32_t clocked_look_slowly(struct clocked *g, struct clocked_router *o, int32_t now);
 
 /* clocked_meet: the n lanes g->active of router o can do something now. Returns when to look again.
  */
 int32_t clocked_meet(struct clocked *g, struct clocked_router *o, int n, int32_t now);
+
+/* clocked_alone: the same for v, which is in nobody's way, and whose way is not clear. */
+int32_t clocked_alone(struct clocked *g, struct clocked_lane *v, int32_t now);
 
 /* clocked_few: the same where they are few with one way on each, and no two heads ask at one port;
  * else it does nothing and returns -1. */
@@ -102,10 +105,11 @@ struct clocked_chance {
 struct clocked_chance clocked_find(struct clocked *g, struct clocked_lane *v,
                                    const struct clocked_port *p, int first, int count, int32_t now);
 
-/* clocked_undisputed: until when none of the lanes `others` of its router can dispute v's way over
- * port out. */
+/* clocked_undisputed: until when, at most `until`, no lane of its router but `also` can dispute v's
+ * way over port out. */
 int32_t clocked_undisputed(const struct clocked *g, const struct clocked_lane *v,
-                           const struct clocked_port *out, uint64_t others, int32_t now);
+                           const struct clocked_lane *also, const struct clocked_port *out,
+                           int32_t until, int32_t now);
 
 /* clocked_sent: what comes of it that k flits of v's front, a lane of `in`, whose head went before,
  * have crossed over the channel that it owns, or will, from `first` to `last`. */

@@ -35,9 +35,10 @@ static int32_t packets_used(const struct clocked *g, const struct clocked_port *
     int32_t used = 0, end = v->out;
     for (int32_t k = v->nleft - 1; k >= 0; end = stay[clocked_place(g, k--)].position) {
         const union clocked_stay *s = &stay[clocked_place(g, k)];
-        const int32_t flits = end - s->position, back = g->now - late - s->at + 1;
+        const int32_t flits = end - s->position, since = g->now - late - s->at;
+        const int32_t back = since < 0 ? 0 : since / g->flit + 1;
         if (back >= flits) break;
-        used += back > 0 ? flits - back : flits;
+        used += flits - back;
     }
     return used;
 }
@@ -56,7 +57,7 @@ int64_t clocked_used(const void *of, int link)
         else if (!home) used += packets_used(g, p, &p->lane[k]);
     }
     /* A packet that is still crossing. */
-    if (g->whole && p->free > g->now) used -= p->free - g->now;
+    if (g->whole && p->free > g->now) used -= (p->free - g->now) / g->flit;
     return used;
 }
 

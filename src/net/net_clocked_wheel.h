@@ -18,11 +18,12 @@ static inline void clocked_wake_if(struct clocked *g, struct clocked_router *o, 
 {
     if (!so || o->wake <= at) return;
     o->wake = at;
+    const uint64_t bit = UINT64_C(1) << o->bit;
     if (at == g->now) {
-        g->again[(o - g->router) / CLOCKED_WORD] |= o->bit;
+        g->again[o->slot - g->slot] |= bit;
         return;
     }
-    o->slot[(size_t)(at & g->wheel) << g->word_shift] |= o->bit;
+    o->slot[(size_t)(at & g->wheel) << g->word_shift] |= bit;
     if (at > g->last) g->last = at;
 }
 

@@ -89,14 +89,14 @@ static sim_ps competes(const struct routers *g, const struct lane *v, const stru
     return router_later(now, w->due) + left * g->fabric.fastest + g->setup;
 }
 
-/* Until when nobody can dispute v's way over port out: a head that is not yet under way to this
- * router asks no sooner than a hop latency from now. */
+/* Until when, at most `until`, nobody can dispute v's way over port out: a head that is not yet
+ * under way to this router asks no sooner than a hop latency from now. */
 static inline sim_ps undisputed(const struct routers *g, const struct lane *v,
-                                const struct port *out, sim_ps now)
+                                const struct port *out, sim_ps until, sim_ps now)
 {
-    sim_ps until = now + g->tau;
     /* A rule that looks at the room in a lane must not see what is yet to come. */
     if (g->fits) return now;
+    until = router_sooner(until, now + g->tau);
     const struct router *o = &g->router[v->of->to];
     for (const struct lane *w = o->busy; w && until > now; w = w->busy)
         if (w != v) until = router_sooner(until, competes(g, v, w, out, now));
@@ -150,7 +150,8 @@ static inline int32_t flits_cross(struct routers *g, struct lane *v, struct port
     if (most > here) most = (int32_t)here;
     if (most > ROUTER_AHEAD) most = ROUTER_AHEAD;
     if (most == 1) return 1;
-    const sim_ps until = undisputed(g, v, p, now);
+    const sim_ps all = router_later(now, from[(k + most - 2) & ring].come) + (most + 1) * flit;
+    const sim_ps until = undisputed(g, v, p, all, now);
     /* Mostly all credits are there. */
     const int64_t needed = out->in + most - 2 - g->buffer;
     const bool room = sink || needed < 0 ||
