@@ -21,43 +21,21 @@ enum {
  * A network with links of one rate, and rules of one or two ways on, whose times have a common
  * measure: that is the cycle. Of lists those whose messages are a packet each and start on one. */
 
-/* The cycle so far, and the longest of the times that it measures. */
-struct measure {
-    sim_ps cycle, longest;
-};
-
-static void measure_with(struct measure *m, sim_ps duration)
-{
-    if (duration > m->longest) m->longest = duration;
-    /* Euclid. */
-    while (duration > 0) {
-        const sim_ps rest = m->cycle % duration;
-        m->cycle = duration;
-        duration = rest;
-    }
-}
-
 /* The cycle of the network, if nobody watches or loads it besides; 0: it has none. A credit and the
  * way of a head to its next look take one at least, so that no flit crosses two routers in one
  * cycle. */
 static sim_ps cycle_find(const struct net *n, const struct routers *g)
 {
-    struct measure m = {n->link.flit, n->link.flit};
+    sim_ps longest;
+    const sim_ps cycle = router_cycle(n, &longest);
     if (!g->even || g->fits || !g->few || n->load || n->path || n->others) return 0;
     if (n->topology->nrouter > MOST_ROUTERS || n->nnode > MOST_ROUTERS) return 0;
     if (n->credit <= 0 || n->tau - n->setup <= 0) return 0;
-    measure_with(&m, n->tau);
-    measure_with(&m, n->credit);
-    measure_with(&m, n->setup);
-    measure_with(&m, n->allocation);
-    for (int i = 0; i < n->nport; i++) {
+    for (int i = 0; i < n->nport; i++)
         if (n->port[i].rate.flit != n->link.flit) return 0;
-        measure_with(&m, n->port[i].gap);
-    }
-    for (int l = 0; n->wire && l < n->nlink; l++) measure_with(&m, n->wire[l]);
     if (!n->port_private || n->in_flight != 0) return 0;
-    const bool one = m.cycle == n->link.flit;
-    return (one || m.cycle >= LEAST_CYCLE) && m.longest / m.cycle < MOST_WHEEL ? m.cycle : 0;
+    if (cycle < LEAST_CYCLE && cycle != n->link.flit) return 0;
+    return longest / cycle < MOST_WHEEL ? cycle : 0;
 }
 
 /* In which cycle each message starts, and how long the longest and the shortest are. False: one

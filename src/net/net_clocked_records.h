@@ -6,7 +6,7 @@
 #define NET_NET_CLOCKED_RECORDS_H
 
 #include "net/net_clocked.h"
-#include "net/net_router.h"
+#include "net/net_router_gather.h"
 
 /* Most lanes and outputs of a router; ways on of a lane, and so its bids. */
 enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_OPTIONS = 2 };

@@ -11,7 +11,7 @@
  */
 #include "net/net_router_front.h"
 
-enum { MOST = 1 << 16 };
+enum { MOST = 1 << 16, SLOTS = 256, MOST_SLOTS = 1 << 13, LEAST_CYCLE = 10 /* [ps] */ };
 
 /* Before what is looked at in an instant: what waited outside comes into its slot. */
 enum { LANE_ENTER = NET_LANE_ARBITRATE - 1 };
@@ -112,7 +112,7 @@ static struct gather_slot *slot_of(struct routers *g, sim_ps at)
     if (q->posted == 0) q->base = sim_now(n->sim);
     const int k = gather_steps(q, at);
     if (k < 0) return NULL;
-    const unsigned i = (q->at + (unsigned)k) % GATHER_SLOTS;
+    const unsigned i = (q->at + (unsigned)k) & q->last;
     struct gather_slot *s = &q->slot[i];
     if (s->posted) return s;
     if (!s->source.word) {
@@ -183,14 +183,52 @@ static void post_gathered(struct routers *g, int r, sim_ps at)
     else sim_at(sim, at, ROUTER_LANE_AGAIN, number, alone_again, g, (uint64_t)r);
 }
 
+/* The common measure of `cycle` and a duration (Euclid), and the longer one of `longest` and it. */
+static void measure_with(sim_ps *cycle, sim_ps *longest, sim_ps duration)
+{
+    if (duration > *longest) *longest = duration;
+    while (duration > 0) {
+        const sim_ps rest = *cycle % duration;
+        *cycle = duration;
+        duration = rest;
+    }
+}
+
+sim_ps router_cycle(const struct net *n, sim_ps *longest)
+{
+    const sim_ps duration[] = {n->tau, n->credit, n->setup, n->allocation};
+    sim_ps cycle = *longest = n->link.flit;
+    for (int i = 0; i < 4; i++) measure_with(&cycle, longest, duration[i]);
+    for (int i = 0; i < n->nport; i++) measure_with(&cycle, longest, n->port[i].gap);
+    for (int l = 0; n->wire && l < n->nlink; l++) measure_with(&cycle, longest, n->wire[l]);
+    return cycle;
+}
+
+/* A slot for each cycle where a hop is no whole number of flits and the wheel is long enough for
+ * it, so that heads have slots; else one for each flit. */
+static void wheel_make(struct routers *g, struct gather *q)
+{
+    const struct net *n = g->fabric.net;
+    sim_ps longest;
+    unsigned slots = SLOTS;
+    const sim_ps cycle = router_cycle(n, &longest);
+    q->unit = n->link.flit;
+    if (g->tau % q->unit != 0 && cycle >= LEAST_CYCLE && 2 * g->tau / cycle < MOST_SLOTS) {
+        q->unit = cycle;
+        while (slots < 2 * g->tau / cycle) slots *= 2;
+    }
+    q->per_unit = 1.0 / (double)q->unit;
+    q->last = slots - 1;
+    q->slot = TAKE(n->arena, slots, struct gather_slot);
+}
+
 /* Sets of all slots take a bit for each node and router: not for the largest networks. */
 bool router_gather(struct net *n)
 {
     struct routers *g = n->state;
     if (n->nnode > MOST || n->topology->nrouter > MOST || n->in_flight > 0) return false;
     g->gather = TAKE(n->arena, 1, struct gather);
-    g->gather->unit = n->link.flit;
-    g->gather->per_unit = 1.0 / (double)n->link.flit;
+    wheel_make(g, g->gather);
     g->gather->hop = -1; /* while it is found */
     g->gather->hop_steps = gather_steps(g->gather, g->tau);
     g->gather->hop = g->tau;

@@ -5,7 +5,7 @@
 
 #include "net/net_router.h"
 
-enum { GATHER_SLOTS = 256, GATHER_WORD = 64 };
+enum { GATHER_WORD = 64 };
 
 /* A set of numbers: a bit for each, and a bit for each word that is not empty. */
 struct gather_set {
@@ -20,15 +20,15 @@ struct gather_slot {
 
 struct gather {
     sim_ps base;     /* the instant of slot `at`; none that is posted is earlier */
-    sim_ps unit;     /* from slot to slot */
+    sim_ps unit;     /* from slot to slot: a flit, or the cycle of the network */
     double per_unit; /* 1 / unit */
     sim_ps hop;      /* a hop latency, which most look ahead, */
     int hop_steps;   /* in slots; -1: none */
-    unsigned at;
+    unsigned at, last; /* slots - 1: a power of two */
     int posted;              /* slots */
     bool sources;            /* nodes came to slot `at` */
     struct gather_set again; /* routers that are looked at again at `base` */
-    struct gather_slot slot[GATHER_SLOTS];
+    struct gather_slot *slot;
 };
 
 /* gather_set_add: number i into the set. */
@@ -46,8 +46,12 @@ static inline int gather_steps(const struct gather *q, sim_ps at)
     const sim_ps ahead = at - q->base;
     if (ahead == q->hop) return q->hop_steps;
     const int64_t k = (int64_t)((double)ahead * q->per_unit + 0.5);
-    return k < GATHER_SLOTS && k * q->unit == ahead ? (int)k : -1;
+    return k <= q->last && k * q->unit == ahead ? (int)k : -1;
 }
+
+/* router_cycle: the longest time that all of the network's times (a flit, a hop, a credit, setups,
+ * gaps, cables) are multiples of [ps], and the longest of these. */
+sim_ps router_cycle(const struct net *n, sim_ps *longest);
 
 /* router_wake: see that router r is looked at, at time `at` or earlier. */
 static inline void router_wake(struct routers *g, int r, sim_ps at)
@@ -60,7 +64,7 @@ static inline void router_wake(struct routers *g, int r, sim_ps at)
     /* Mostly into a later slot that others have asked for already. */
     const int k = q ? gather_steps(q, at) : -1;
     if (k > 0) {
-        struct gather_slot *s = &q->slot[(q->at + (unsigned)k) % GATHER_SLOTS];
+        struct gather_slot *s = &q->slot[(q->at + (unsigned)k) & q->last];
         if (s->posted) {
             gather_set_add(&s->router, r);
             return;
