@@ -166,12 +166,12 @@ static struct clocked *clocked_make(struct net *n, sim_ps unit, const struct clo
     g->setup = (int32_t)(n->setup / unit);
     g->reach = g->tau - g->setup;
     g->pause = (int32_t)(n->allocation / unit);
-    g->queues = !g->whole || g->tau > MOST_NEAR * g->flit;
     for (int l = 0; n->wire && l < n->nlink; l++)
         g->longest_wire = clocked_later(g->longest_wire, (int32_t)(n->wire[l] / unit));
     g->buffer = (int32_t)from->buffer;
     g->nchannel = from->nchannel;
     g->whole = from->whole;
+    g->queues = !g->whole || g->tau > MOST_NEAR * g->flit;
     g->single = from->single;
     g->strict = from->strict;
     g->priority = from->priority;
