@@ -87,7 +87,8 @@ static void booksim_keep(struct routing *r, struct arena *a)
     struct lattice *g = r->state;
     const int n = g->nrouter;
     if (!g->wraps) return;
-    struct lattice_step *step = TAKE(a, size_product((size_t)n, (size_t)n), struct lattice_step);
+    struct lattice_step *step =
+        TAKE_FULL(a, size_product((size_t)n, (size_t)n), struct lattice_step, true);
     for (int i = 0; i < n * n; i++)
         if (i / n != i % n) step[i] = step_between(g, i / n, i % n);
     g->step = step;
@@ -224,7 +225,7 @@ static bool distance_create(struct routing *r, struct arena *a, struct err *e)
                        "the distances of at most %d",
                        topology_family_name(t->spec->family), t->nrouter, MOST_TABLED);
     leaving_links(g, t, a);
-    g->distance = TAKE(a, size_product((size_t)t->nrouter, (size_t)t->nrouter), uint8_t);
+    g->distance = TAKE_FULL(a, size_product((size_t)t->nrouter, (size_t)t->nrouter), uint8_t, true);
     r->state = g;
     if (!measure(g, t, a))
         return err_set(e, ERR_CONFIG, "network.routing 'adaptive': not all routers are joined");

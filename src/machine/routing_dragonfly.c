@@ -15,7 +15,7 @@ static void dragonfly_keep(struct routing *r, struct arena *a)
     const struct topology *t = r->topology;
     const int *dims = t->spec->dims, n = t->nrouter, groups = n / dims[1];
     if (dims[1] * dims[2] / (groups - 1) > 1) return;
-    int *next = TAKE(a, size_product((size_t)n, (size_t)n), int);
+    int *next = TAKE_FULL(a, size_product((size_t)n, (size_t)n), int, true);
     for (int from = 0; from < n; from++)
         for (int to = 0; to < n; to++) {
             struct route_cursor c = topology_start(t, from * dims[0], to * dims[0], 0);

@@ -65,7 +65,7 @@ static void order_keep(struct routing *r, struct arena *a)
     bool single = !g->wraps && g->degree <= UINT8_MAX;
     for (int d = 0; d < g->ndim; d++) single = single && g->bundle[d] == 1;
     for (int descending = 0; single && descending < 2; descending++) {
-        uint8_t *slot = TAKE(a, size_product((size_t)n, (size_t)n), uint8_t);
+        uint8_t *slot = TAKE_FULL(a, size_product((size_t)n, (size_t)n), uint8_t, true);
         for (int from = 0; from < n; from++)
             for (int to = 0; to < n; to++) {
                 const int d = lattice_dimension(g, from, to, descending);
@@ -242,7 +242,7 @@ static void butterfly_keep(struct routing *r, struct arena *a)
 {
     struct lattice *g = r->state;
     const int n = g->nrouter;
-    uint8_t *far = TAKE(a, size_product((size_t)n, (size_t)n), uint8_t);
+    uint8_t *far = TAKE_FULL(a, size_product((size_t)n, (size_t)n), uint8_t, true);
     order_keep(r, a);
     for (int from = 0; from < n; from++)
         for (int to = 0; to < n; to++) far[from * n + to] = (uint8_t)distance(g, from, to);

@@ -107,8 +107,8 @@ const struct routing_steps *routing_steps(const struct routing *r, struct arena 
     const uint8_t *output = outputs_of(t, a);
     if (!output) return NULL;
     struct routing_steps *s = TAKE(a, 1, struct routing_steps);
-    uint8_t *step =
-        TAKE(a, size_product(size_product((size_t)nstate, (size_t)n), (size_t)n), uint8_t);
+    uint8_t *step = TAKE_FULL(a, size_product(size_product((size_t)nstate, (size_t)n), (size_t)n),
+                              uint8_t, true);
     int *node = TAKE(a, n, int); /* 1 + one of each router's; 0: nobody goes there */
     for (int i = 0; i < t->nnode; i++) node[topology_router_of(t, i)] = i + 1;
     *s = (struct routing_steps){.nstate = nstate, .step = step, .any = TAKE(a, n, uint8_t)};

@@ -102,14 +102,14 @@ static bool ports_make(struct clocked *g, const struct routers *from)
     int *input = TAKE(a, g->nrouter, int), sink, next = 0;
     if (!inputs_count(g, from, input, &sink)) return false;
     g->nport = sink + g->nnode;
-    g->port = TAKE(a, g->nport, struct clocked_port);
-    g->lane = TAKE(a, size_product((size_t)g->nport, g->nchannel), struct clocked_lane);
+    g->port = TAKE_FULL(a, g->nport, struct clocked_port, true);
+    g->lane = TAKE_FULL(a, size_product((size_t)g->nport, g->nchannel), struct clocked_lane, true);
     g->sink = g->port + sink;
     for (int i = 0; i < g->nport; i++) g->port[i].lane = g->lane + i * (int)g->nchannel;
     for (int i = 0; i < g->nport * (int)g->nchannel; i++)
         g->lane[i].port = (uint16_t)(i / (int)g->nchannel);
     struct clocked_coming *coming =
-        TAKE(a, size_product((size_t)sink, g->nchannel), struct clocked_coming);
+        TAKE_FULL(a, size_product((size_t)sink, g->nchannel), struct clocked_coming, true);
     for (int r = 0; r < g->nrouter; next += input[r++])
         g->router[r] = (struct clocked_router){.lane = g->port[next].lane,
                                                .port = &g->port[next],
@@ -131,7 +131,8 @@ static void ports_fill(struct clocked *g, const struct routers *from)
     const struct net *n = g->net;
     g->source = TAKE(n->arena, g->nnode, struct clocked_source);
     g->port_of = TAKE(n->arena, n->nlink + 1, int32_t);
-    g->exit = TAKE(n->arena, size_product((size_t)g->nrouter, CLOCKED_WORD), struct clocked_port *);
+    g->exit = TAKE_FULL(n->arena, size_product((size_t)g->nrouter, CLOCKED_WORD),
+                        struct clocked_port *, true);
     for (int i = 0; i < n->nresource; i++) {
         const struct port *p = &from->port[i];
         const bool out = net_is_ejection(n, i), in = net_is_injection(n, i);
@@ -184,7 +185,7 @@ static struct clocked *clocked_make(struct net *n, sim_ps unit, const struct clo
     g->nnode = n->nnode;
     g->bytes = -1;
     g->start = TAKE_FULL(n->arena, q->count + 1, int32_t, true);
-    g->router = TAKE(n->arena, g->nrouter, struct clocked_router);
+    g->router = TAKE_FULL(n->arena, g->nrouter, struct clocked_router, true);
     return g;
 }
 
@@ -215,18 +216,18 @@ static bool lanes_make(struct clocked *g, int32_t gap)
     const size_t slots = ((size_t)g->wheel + 1) << g->word_shift,
                  places = size_product(lanes, (size_t)g->ring + 1);
     if (!are_few(g, g->nport, slots + places)) return false;
-    g->slot = TAKE(a, slots, uint64_t);
+    g->slot = TAKE_FULL(a, slots, uint64_t, true);
     for (int r = 0; r < g->nrouter; r++) {
         g->router[r].slot = g->slot + r / CLOCKED_WORD;
         g->router[r].bit = (uint16_t)(r % CLOCKED_WORD);
     }
     g->again = TAKE(a, g->router_words, uint64_t);
-    g->stay = TAKE(a, places, union clocked_stay);
+    g->stay = TAKE_FULL(a, places, union clocked_stay, true);
     g->stay_row = (int32_t)lanes * CLOCKED_ROW;
-    g->option = TAKE(a, size_product(lanes, CLOCKED_OPTIONS), struct route_option);
-    g->retry = TAKE(a, lanes, int32_t);
-    g->match = TAKE(a, lanes, struct clocked_match);
-    g->side = TAKE(a, g->nport, struct clocked_side);
+    g->option = TAKE_FULL(a, size_product(lanes, CLOCKED_OPTIONS), struct route_option, true);
+    g->retry = TAKE_FULL(a, lanes, int32_t, true);
+    g->match = TAKE_FULL(a, lanes, struct clocked_match, true);
+    g->side = TAKE_FULL(a, g->nport, struct clocked_side, true);
     g->ask = TAKE(a, size_product(CLOCKED_BIDS, g->nchannel), struct clocked_ask);
     g->bid = TAKE(a, CLOCKED_BIDS, struct clocked_bid);
     return true;

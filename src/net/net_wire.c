@@ -110,7 +110,7 @@ void net_keep_ways(struct net *n)
     const int routers = n->topology->nrouter;
     const bool alike = !n->link_rate && (r->fixed || (r->minimal && !n->wire));
     if (alike && routers <= MOST_KEPT)
-        n->way = TAKE(n->arena, size_product((size_t)routers, (size_t)routers), sim_ps);
+        n->way = TAKE_FULL(n->arena, size_product((size_t)routers, (size_t)routers), sim_ps, true);
 }
 
 sim_ps net_way(const struct net *n, const struct net_message *m, struct net_rate *slow)

@@ -303,10 +303,10 @@ static double geometric(struct random *r, double prob)
 static void traffic_take(struct traffic *q, int n, struct arena *a)
 {
     *q = (struct traffic){.nmessage = n};
-    q->src = TAKE(a, n + 1, int);
-    q->dst = TAKE(a, n + 1, int);
-    q->bytes = TAKE(a, n + 1, int64_t);
-    q->time = TAKE(a, n + 1, sim_ps);
+    q->src = TAKE_FULL(a, n + 1, int, true);
+    q->dst = TAKE_FULL(a, n + 1, int, true);
+    q->bytes = TAKE_FULL(a, n + 1, int64_t, true);
+    q->time = TAKE_FULL(a, n + 1, sim_ps, true);
 }
 
 bool pattern_traffic(const struct pattern *p, const struct pattern_load *l, struct arena *a,

@@ -37,10 +37,10 @@ static void repeat(const struct load_question *q, double load, sim_ps length, st
     const double slower = r->load / load, period = (double)r->period * slower;
     int64_t most = (int64_t)(ceil((double)length / period) + 1) * r->nmessage;
     *t = (struct traffic){.nmessage = 0};
-    t->src = TAKE(a, most, int);
-    t->dst = TAKE(a, most, int);
-    t->bytes = TAKE(a, most, int64_t);
-    t->time = TAKE(a, most, sim_ps);
+    t->src = TAKE_FULL(a, most, int, true);
+    t->dst = TAKE_FULL(a, most, int, true);
+    t->bytes = TAKE_FULL(a, most, int64_t, true);
+    t->time = TAKE_FULL(a, most, sim_ps, true);
     for (int64_t k = 0; k < most; k++) {
         int m = (int)(k % r->nmessage), n = t->nmessage;
         double at = (double)(k / r->nmessage) * period + (double)r->time[m] * slower;
@@ -109,7 +109,7 @@ struct attempt {
 static void sort_out(const struct traffic *t, const sim_ps *arrival, struct attempt *x,
                      struct arena *a)
 {
-    struct created *list = TAKE(a, t->nmessage + 1, struct created);
+    struct created *list = TAKE_FULL(a, t->nmessage + 1, struct created, true);
     const sim_ps end = (sim_ps)(measured_part * (double)x->length);
     for (int m = 0; m < t->nmessage; m++) {
         if (t->time[m] >= end) continue;
@@ -117,8 +117,8 @@ static void sort_out(const struct traffic *t, const sim_ps *arrival, struct atte
         x->late += arrival[m] > x->length;
     }
     qsort(list, (size_t)x->n, sizeof *list, by_creation);
-    x->latency = TAKE(a, x->n + 1, double);
-    x->created = TAKE(a, x->n + 1, sim_ps);
+    x->latency = TAKE_FULL(a, x->n + 1, double, true);
+    x->created = TAKE_FULL(a, x->n + 1, sim_ps, true);
     for (int64_t i = 0; i < x->n; i++) {
         x->created[i] = list[i].time;
         x->latency[i] = (double)(arrival[list[i].message] - list[i].time);
@@ -153,7 +153,7 @@ static bool run_once(const struct load_question *q, double offered, int64_t cycl
     struct traffic t;
     *x = (struct attempt){.n = 0};
     if (!make_messages(q, offered, cycles, a, &t, e)) return false;
-    struct traffic_result r = {.arrival = TAKE(a, t.nmessage + 1, sim_ps)};
+    struct traffic_result r = {.arrival = TAKE_FULL(a, t.nmessage + 1, sim_ps, true)};
     x->length = t.stop;
     if (!traffic_run(&t, q->machine, q->topology, a, false, &r, e)) return false;
     p->events += r.events;
