@@ -1,10 +1,11 @@
 /* net_clocked.h - lists of messages on routers of one clock: the levels of net_router.h in whole
  * cycles and small records.
  *
- * Where all times are multiples of the time of a flit, and every message is one packet, a list
- * needs no event queue and no picoseconds: a wheel of cycles with a bit for each router and node,
- * and records of a cache line. What is looked at when, in what order, and what comes of it, are
- * those of net_router_gather.c, which plays everything else; the tests compare both. */
+ * Where all times are multiples of one that is not too short, that of a flit or a part of it, and
+ * every message is one packet, a list needs no event queue and no picoseconds: a wheel of cycles
+ * with a bit for each router and node, and records of a cache line. What is looked at when, in what
+ * order, and what comes of it, are those of net_router_gather.c, which plays everything else; the
+ * tests compare both. */
 #ifndef NET_NET_CLOCKED_H
 #define NET_NET_CLOCKED_H
 

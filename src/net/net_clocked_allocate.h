@@ -1,4 +1,4 @@
-/* net_clocked_allocate.h - the scratch of one allocation of net_clocked.h. */
+/* net_clocked_allocate.h - looks at routers in which lanes meet: what one notes of each. */
 #ifndef NET_NET_CLOCKED_ALLOCATE_H
 #define NET_NET_CLOCKED_ALLOCATE_H
 
