@@ -149,11 +149,15 @@ static void late_cycles_are_played_by_events(void **state)
         assert_false(far_list_agrees(&m, 40, (4 * last - 20) * cycle, 7 * cycle, 0));
         assert_false(far_list_agrees(&m, 40, 4 * last * cycle, 7 * cycle, 0));
         assert_false(far_list_agrees(&m, 40, (last - 20) * cycle, 7 * cycle, (last + 9) * cycle));
-        /* Whom the stop cuts off is not stuck, although his arrival was told before. */
-        struct machine_spec uneven = m;
+        /* Whom the stop cuts off is not stuck, although his arrival was told before: by events, and
+         * in cycles of half a flit. */
+        struct machine_spec uneven = m, half = m;
         uneven.network.hop_latency = 5.503e-9;
-        for (sim_ps stop = cycle; stop < 40 * cycle; stop += cycle)
+        half.network.hop_latency = 5.5e-9;
+        for (sim_ps stop = cycle; stop < 40 * cycle; stop += cycle) {
             assert_false(far_list_agrees(&uneven, 1, 0, cycle, stop));
+            assert_true(far_list_agrees(&half, 1, 0, cycle, stop));
+        }
     }
 }
 

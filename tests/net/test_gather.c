@@ -370,6 +370,7 @@ static void list_on_common_cycle_agrees(int trial, int *played, int *clocked, in
     m.network.hop_latency = hop[below(&r, 7)];
     m.network.credit_latency = credit[below(&r, 4)];
     if (below(&r, 3) == 0) m.network.routing_latency = below(&r, 2) ? 1e-9 : 0.35e-9;
+    if (below(&r, 4) == 0) m.software.gap = below(&r, 2) ? 2.5e-9 : 40.2e-9;
     m.network.packet_bytes = 0;
     const struct topology *t = topology_create(&m.topology, a, &e);
     struct traffic q;
