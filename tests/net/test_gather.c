@@ -301,6 +301,30 @@ static void looks_have_one_order_when_credits_are_back_at_once(void **state)
     }
 }
 
+/* A list of messages of one packet each, which start on whole flits, or, if `fine`, now and then
+ * between them. Returns whether machine m can play it: then in cycles as by events. */
+static bool packets_agree(const struct machine_spec *m, bool fine, int trial, struct random *r,
+                          struct arena *a, int *clocked)
+{
+    struct err e;
+    err_clear(&e);
+    const struct topology *t = topology_create(&m->topology, a, &e);
+    struct traffic q;
+    struct traffic_result x;
+    assert_non_null(t);
+    draw_list(r, t->nnode, a, &q);
+    q.dep_first = NULL;
+    const int longest = below(r, 3) ? 1 + below(r, 4) : 16,
+              grid = fine && below(r, 3) == 0 ? 10 : 1000;
+    for (int i = 0; i < q.nmessage; i++) {
+        q.bytes[i] = 16 * (q.bytes[i] / 16 % longest);
+        q.time[i] = q.time[i] / grid * grid;
+    }
+    if (!play(m, &q, true, a, &x, &e)) return false;
+    play_in_cycles(m, &q, a, &x, trial, clocked);
+    return true;
+}
+
 /* Machines and lists that can be played in cycles: links of one rate, times on the cycle, messages
  * of one packet; loads from next to nothing to far beyond saturation. Counts those that are. */
 static void list_in_cycles_agrees(int trial, int *played, int *clocked)
@@ -309,29 +333,13 @@ static void list_in_cycles_agrees(int trial, int *played, int *clocked)
     struct random r = random_make((uint64_t)trial, 9, 10);
     struct arena *a = arena_create();
     struct topology_spec s = draw_network(&r);
-    struct err e;
-    err_clear(&e);
     for (int d = 0; below(&r, 3) == 0 && d < 2 && d < s.ndim; d++)
         s.dim_latency[d] = cable[below(&r, 4)];
     struct machine_spec m = draw_machine(&r, &s);
     if (m.network.credit_latency < 1e-9 && below(&r, 8)) m.network.credit_latency = 1e-9;
     if (below(&r, 8)) m.network.hop_latency = (3 + below(&r, 4)) * 1e-9;
     m.network.packet_bytes = 0;
-    const struct topology *t = topology_create(&m.topology, a, &e);
-    struct traffic q;
-    struct traffic_result x;
-    assert_non_null(t);
-    draw_list(&r, t->nnode, a, &q);
-    q.dep_first = NULL;
-    const int longest = below(&r, 3) ? 1 + below(&r, 4) : 16;
-    for (int i = 0; i < q.nmessage; i++) {
-        q.bytes[i] = 16 * (q.bytes[i] / 16 % longest);
-        q.time[i] = q.time[i] / 1000 * 1000;
-    }
-    if (play(&m, &q, true, a, &x, &e)) {
-        play_in_cycles(&m, &q, a, &x, trial, clocked);
-        ++*played;
-    }
+    *played += packets_agree(&m, false, trial, &r, a, clocked);
     arena_destroy(a);
 }
 
@@ -361,8 +369,6 @@ static void list_on_common_cycle_agrees(int trial, int *played, int *clocked, in
     struct random r = random_make((uint64_t)trial, 11, 12);
     struct arena *a = arena_create();
     struct topology_spec s = draw_network(&r);
-    struct err e;
-    err_clear(&e);
     if (s.nodes_per_router > 1 && below(&r, 3) == 0) s.nodes_per_router *= 1 + below(&r, 6);
     for (int d = 0; below(&r, 3) == 0 && d < 2 && d < s.ndim; d++)
         s.dim_latency[d] = cable[below(&r, 6)];
@@ -372,23 +378,9 @@ static void list_on_common_cycle_agrees(int trial, int *played, int *clocked, in
     if (below(&r, 3) == 0) m.network.routing_latency = below(&r, 2) ? 1e-9 : 0.35e-9;
     if (below(&r, 4) == 0) m.software.gap = below(&r, 2) ? 2.5e-9 : 40.2e-9;
     m.network.packet_bytes = 0;
-    const struct topology *t = topology_create(&m.topology, a, &e);
-    struct traffic q;
-    struct traffic_result x;
-    assert_non_null(t);
-    draw_list(&r, t->nnode, a, &q);
-    q.dep_first = NULL;
-    const int longest = below(&r, 3) ? 1 + below(&r, 4) : 16, grid = below(&r, 3) ? 1000 : 10;
-    for (int i = 0; i < q.nmessage; i++) {
-        q.bytes[i] = 16 * (q.bytes[i] / 16 % longest);
-        q.time[i] = q.time[i] / grid * grid;
-    }
-    if (play(&m, &q, true, a, &x, &e)) {
-        const int before = *clocked;
-        play_in_cycles(&m, &q, a, &x, trial, clocked);
-        ++*played;
-        *wide += *clocked > before && s.nodes_per_router * m.network.virtual_channels > 64;
-    }
+    const int before = *clocked;
+    *played += packets_agree(&m, true, trial, &r, a, clocked);
+    *wide += *clocked > before && s.nodes_per_router * m.network.virtual_channels > 64;
     arena_destroy(a);
 }
 
