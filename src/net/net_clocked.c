@@ -6,12 +6,12 @@
 
 #include "base/digest.h"
 #include "net/net_clocked_allocate.h"
+#include "net/net_router_gather.h"
 
 enum {
     MOST_ROUTERS = 8192,   /* of a cycle all words are looked through */
     MOST_NEAR = 16,        /* flits of a hop latency within which few heads are under way */
     MOST_WHEEL = 1 << 16,  /* cycles from a look to what it may post */
-    LEAST_CYCLE = 10,      /* [ps] below it most cycles are empty */
     MOST_LAST = 1 << 30,   /* no cycle from this one on: sums of a few times stay below 2^31 */
     MOST_BYTES = 256 << 20 /* of records; messages take eight more each */
 };
@@ -26,16 +26,15 @@ enum {
  * cycle. */
 static sim_ps cycle_find(const struct net *n, const struct routers *g)
 {
-    sim_ps longest;
-    const sim_ps cycle = router_cycle(n, &longest);
     if (!g->even || g->fits || !g->few || n->load || n->path || n->others) return 0;
     if (n->topology->nrouter > MOST_ROUTERS || n->nnode > MOST_ROUTERS) return 0;
     if (n->credit <= 0 || n->tau - n->setup <= 0) return 0;
     for (int i = 0; i < n->nport; i++)
         if (n->port[i].rate.flit != n->link.flit) return 0;
     if (!n->port_private || n->in_flight != 0) return 0;
-    if (cycle < LEAST_CYCLE && cycle != n->link.flit) return 0;
-    return longest / cycle < MOST_WHEEL ? cycle : 0;
+    sim_ps longest;
+    const sim_ps cycle = router_cycle(n, &longest);
+    return cycle > 0 && longest / cycle < MOST_WHEEL ? cycle : 0;
 }
 
 /* In which cycle each message starts, and how long the longest and the shortest are. False: one

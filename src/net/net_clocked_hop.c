@@ -84,7 +84,6 @@ static inline bool flits_follow(const struct clocked *g, const struct clocked_la
                                 int32_t flits, int32_t now)
 {
     const int32_t tail = now + (flits - 1) * g->flit;
-
     if (v->in - v->out < flits || flits > ROUTER_AHEAD || flits > g->buffer) return false;
     /* They come one after the other: the last one says it of all. */
     if (clocked_stay(g, v, v->out + flits - 1)->come > tail) return false;

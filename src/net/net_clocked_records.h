@@ -6,12 +6,12 @@
 #define NET_NET_CLOCKED_RECORDS_H
 
 #include "net/net_clocked.h"
-#include "net/net_router_gather.h"
+#include "net/net_router.h"
 
-/* Most lanes and outputs of a router; ways on of a lane, and so its bids. */
-enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_OPTIONS = 2 };
-enum { CLOCKED_SET = 4, CLOCKED_LANES = CLOCKED_SET * CLOCKED_WORD };
-enum { CLOCKED_BIDS = CLOCKED_OPTIONS * CLOCKED_LANES };
+/* A set of a router's outputs is a word, one of its lanes so many words. Each lane has so many ways
+ * on, and a bid for each. */
+enum { CLOCKED_NEVER = INT32_MAX, CLOCKED_WORD = 64, CLOCKED_SET = 4, CLOCKED_OPTIONS = 2 };
+enum { CLOCKED_LANES = CLOCKED_SET * CLOCKED_WORD, CLOCKED_BIDS = CLOCKED_OPTIONS * CLOCKED_LANES };
 enum { CLOCKED_ROW = ROUTER_LINE / 8 }; /* places of a ring in a cache line */
 
 /* For whole packets and for flits apart: `whole` is constant in each. */

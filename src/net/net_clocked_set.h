@@ -75,7 +75,6 @@ static inline void clocked_comes(const struct clocked *g, struct clocked_router 
 /* clocked_have_come: those that are due now into the set. Returns when the next one is. */
 static inline int32_t clocked_have_come(struct clocked_router *o, int32_t now)
 {
-    if (o->next == o->end) return CLOCKED_NEVER;
     for (; o->next < o->end; o->next++) {
         const struct clocked_coming *c = &o->coming[o->next];
         if (c->due > now) return c->due;

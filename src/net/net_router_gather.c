@@ -11,7 +11,7 @@
  */
 #include "net/net_router_front.h"
 
-enum { MOST = 1 << 16, SLOTS = 256, MOST_SLOTS = 1 << 13, LEAST_CYCLE = 10 /* [ps] */ };
+enum { MOST = 1 << 16, SLOTS = 256, MOST_SLOTS = 1 << 13, LEAST_CYCLE = 10 /* [ps] below it most cycles are empty */ };
 
 /* Before what is looked at in an instant: what waited outside comes into its slot. */
 enum { LANE_ENTER = NET_LANE_ARBITRATE - 1 };
@@ -201,7 +201,7 @@ sim_ps router_cycle(const struct net *n, sim_ps *longest)
     for (int i = 0; i < 4; i++) measure_with(&cycle, longest, duration[i]);
     for (int i = 0; i < n->nport; i++) measure_with(&cycle, longest, n->port[i].gap);
     for (int l = 0; n->wire && l < n->nlink; l++) measure_with(&cycle, longest, n->wire[l]);
-    return cycle;
+    return cycle >= LEAST_CYCLE || cycle == n->link.flit ? cycle : 0;
 }
 
 /* A slot for each cycle where a hop is no whole number of flits and the wheel is long enough for
@@ -213,7 +213,7 @@ static void wheel_make(struct routers *g, struct gather *q)
     unsigned slots = SLOTS;
     const sim_ps cycle = router_cycle(n, &longest);
     q->unit = n->link.flit;
-    if (g->tau % q->unit != 0 && cycle >= LEAST_CYCLE && 2 * g->tau / cycle < MOST_SLOTS) {
+    if (g->tau % q->unit != 0 && cycle > 0 && 2 * g->tau / cycle < MOST_SLOTS) {
         q->unit = cycle;
         while (slots < 2 * g->tau / cycle) slots *= 2;
     }

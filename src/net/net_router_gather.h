@@ -24,7 +24,7 @@ struct gather {
     double per_unit; /* 1 / unit */
     sim_ps hop;      /* a hop latency, which most look ahead, */
     int hop_steps;   /* in slots; -1: none */
-    unsigned at, last; /* slots - 1: a power of two */
+    unsigned at, last; /* last: number of slots, a power of two, less one */
     int posted;              /* slots */
     bool sources;            /* nodes came to slot `at` */
     struct gather_set again; /* routers that are looked at again at `base` */
@@ -50,7 +50,8 @@ static inline int gather_steps(const struct gather *q, sim_ps at)
 }
 
 /* router_cycle: the longest time that all of the network's times (a flit, a hop, a credit, setups,
- * gaps, cables) are multiples of [ps], and the longest of these. */
+ * gaps, cables) are multiples of [ps]; 0: it is shorter than a flit, and too short to count in.
+ * *longest: the longest of these times [ps]. */
 sim_ps router_cycle(const struct net *n, sim_ps *longest);
 
 /* router_wake: see that router r is looked at, at time `at` or earlier. */
