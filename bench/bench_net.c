@@ -167,13 +167,17 @@ static void bench_loads(const bool *wanted)
         }
 }
 
-/* Series of BookSim at a load of 0.1, packets of 4 flits, on its router of four stages. */
+/* Series of BookSim at a load of 0.1, packets of 4 flits, on its router of four stages; two of 512
+ * routers, the last one with hops as long as those of today's cables, which are no whole number of
+ * flits. */
 static const struct {
     struct topology_spec topology;
     enum routing_rule rule;
     const char *what, *pattern;
     int vcs, buffer;
-    double booksim; /* packets per second of one core */
+    double booksim; /* packets per second of one core; 0: not measured */
+    int cycles;     /* of the list; 0: LOAD_CYCLES */
+    double hop;     /* [s]; 0: that of the router */
 } series[] = {
     {{.family = TOPOLOGY_MESH, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
      ROUTING_ADAPTIVE_XY_YX,
@@ -181,28 +185,28 @@ static const struct {
      "transpose",
      4,
      16,
-     27000},
+     .booksim = 27000},
     {{.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {8, 8}, .nodes_per_router = 1},
      ROUTING_BOOKSIM_MIN_ADAPT,
      "torus8x8 min-adapt",
      "tornado(8,2)",
      4,
      16,
-     27000},
+     .booksim = 27000},
     {{.family = TOPOLOGY_HYPERX, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 4},
      ROUTING_BOOKSIM_UGAL,
      "flatfly4x4c4 ugal",
      "tornado(8,2)",
      4,
      16,
-     56000},
+     .booksim = 56000},
     {{.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1},
      ROUTING_NCA,
      "fattree_k4_n3 nca",
      "uniform",
      4,
      16,
-     34000},
+     .booksim = 34000},
     {{.family = TOPOLOGY_DRAGONFLY,
       .ndim = 4,
       .dims = {2, 4, 2, 0},
@@ -213,7 +217,23 @@ static const struct {
      "uniform",
      3,
      256,
-     41000},
+     .booksim = 41000},
+    {{.family = TOPOLOGY_TORUS, .ndim = 3, .dims = {8, 8, 8}, .nodes_per_router = 1},
+     ROUTING_BOOKSIM_DIM_ORDER,
+     "torus8x8x8 dim-order",
+     "uniform",
+     4,
+     16,
+     .booksim = 14200,
+     .cycles = LOAD_CYCLES / 4},
+    {{.family = TOPOLOGY_TORUS, .ndim = 3, .dims = {8, 8, 8}, .nodes_per_router = 1},
+     ROUTING_BOOKSIM_DIM_ORDER,
+     "torus8x8x8 long hops",
+     "uniform",
+     8,
+     256,
+     .cycles = LOAD_CYCLES / 4,
+     .hop = 117.2e-9},
 };
 
 static void bench_routed(const bool *wanted)
@@ -229,10 +249,12 @@ static void bench_routed(const bool *wanted)
         j.machine = netcheck_machine(&s, series[i].vcs, series[i].buffer, ROUTED_FLITS, STAGES);
         j.machine.network.routing = series[i].rule;
         j.machine.network.vc_allocator = ALLOCATOR_ISLIP;
+        if (series[i].hop > 0) j.machine.network.hop_latency = series[i].hop;
+        const int cycles = series[i].cycles > 0 ? series[i].cycles : LOAD_CYCLES;
         j.topology = topology_create(&j.machine.topology, j.arena, &e);
         CHECK(j.topology);
-        CHECK(netcheck_load(series[i].pattern, j.topology, ROUTED_FLITS, 0.1, LOAD_CYCLES, 1,
-                            j.arena, &j.q, &e));
+        CHECK(netcheck_load(series[i].pattern, j.topology, ROUTED_FLITS, 0.1, cycles, 1, j.arena,
+                            &j.q, &e));
         for (int l = 0; l < LEVELS; l++)
             if (wanted[l]) measure(&j, series[i].what, (enum network_level)l, series[i].booksim);
         arena_destroy(j.arena);

@@ -11,7 +11,12 @@
  */
 #include "net/net_router_front.h"
 
-enum { MOST = 1 << 16, SLOTS = 256, MOST_SLOTS = 1 << 13, LEAST_CYCLE = 10 /* [ps] below it most cycles are empty */ };
+enum {
+    MOST = 1 << 16,
+    SLOTS = 256,
+    MOST_SLOTS = 1 << 13,
+    LEAST_CYCLE = 10 /* [ps] below it most cycles are empty */
+};
 
 /* Before what is looked at in an instant: what waited outside comes into its slot. */
 enum { LANE_ENTER = NET_LANE_ARBITRATE - 1 };
